@@ -12,7 +12,7 @@ def check_lights(subject):
     snapshot = subject.snapshot
     if snapshot.settings.integrator == Integrator.NORMALS:
         return
-    levels = [max(light.emission) for light in snapshot.lights]
+    levels = [max(map(abs, light.emission)) for light in snapshot.lights]
     if not (any(level > 0.0 for level in levels) or not is_zero(snapshot.world.radiance) or _any_emission(subject)):
         # A scene with other passes may be meant for those alone, such as masks.
         if set(snapshot.settings.passes) == {Pass.COMBINED}:

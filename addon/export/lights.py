@@ -12,6 +12,7 @@ from ..messages.severity import Severity
 from .checks import check_linking
 from .graph import NodeGraph
 from .images import NoPictures
+from .lamp_transforms import area_of, axes_of, cone_stretch, describe_shear, is_flattened
 from .surface import emission_of
 from .visibility import object_hidden_from
 
@@ -37,19 +38,25 @@ def export_light(thing, matrix_world, messages, depsgraph=None, hidden=None):
     if kind == LightKind.AREA:
         shape, size = _area(light, matrix, who, messages)
     elif kind == LightKind.SPOT:
-        size = _stretch(matrix)
-    if kind == LightKind.AREA and not size[0] * size[1] > 0.0:
+        size = cone_stretch(matrix)
+    area = area_of(matrix, shape, size)
+    if kind == LightKind.AREA and not area > 0.0:
         messages.add(f"{who}: its area is zero, it is left out", severity=Severity.LEFT_OUT)
         return None
+    if is_flattened(kind, matrix, depsgraph):
+        messages.add(f"{who}: its transform flattens it, as in Cycles it gives no light", severity=Severity.HINT)
+        return None
+    if text := describe_shear(kind, matrix, depsgraph):
+        messages.add(f"{who}: {text}")
     # Only constant light is supported: read no images.
     graph = NodeGraph(who, messages, NoPictures(), depsgraph, unknown="white")
     own = light.lancer
     separate = own.use_separate_colors
     return snapshot.Light(
         name=thing.name,
-        matrix=_rotation(matrix),
+        matrix=axes_of(kind, matrix),
         kind=kind,
-        emission=tuple(c * _watts_to_emission(light, kind, radius, sun_angle, shape, size) for c in _power(light, graph)),
+        emission=tuple(c * _watts_to_emission(light, kind, radius, sun_angle, area) for c in _power(light, graph)),
         radius=radius if kind in (LightKind.POINT, LightKind.SPOT) else 0.0,
         soft_falloff=getattr(light, "use_soft_falloff", True),
         spot_angle=messages.number(getattr(light, "spot_size", math.pi), who, "spot size", 0.785, 1e-3, math.pi),
@@ -76,23 +83,6 @@ def _ambient(own, who, messages):
     return messages.color(own.ambient_color, who, "ambient colour", 1.0) if own.use_separate_colors else (1.0, 1.0, 1.0)
 
 
-def _rotation(matrix):
-    """Return the matrix with columns of unit length; a column of length 0 becomes the unit vector of its axis."""
-    result = matrix[:3].copy()
-    lengths = np.linalg.norm(result[:, :3], axis=0)
-    for axis in range(3):
-        result[:, axis] = result[:, axis] / lengths[axis] if lengths[axis] > 0.0 else np.eye(3)[axis]
-    return result
-
-
-def _stretch(matrix):
-    """Return the stretch of a spot's cone along x and y by its scale; before 4.0 Cycles keeps the cone round."""
-    lengths = np.linalg.norm(matrix[:3, :3], axis=0)
-    if bpy.app.version < (4, 0) or not lengths.all():
-        return 1.0, 1.0
-    return float(lengths[0] / lengths[2]), float(lengths[1] / lengths[2])
-
-
 def _casts_shadow(light):
     """Whether the light casts shadows: by Cycles' own switch in versions that have it, in which use_shadow is EEVEE's."""
     return getattr(getattr(light, "cycles", None), "cast_shadow", light.use_shadow)
@@ -101,7 +91,7 @@ def _casts_shadow(light):
 def _power(light, graph):
     """Return watts per channel: the product of energy, colour, temperature, exposure and constant nodes."""
     who, messages = graph.owner, graph.messages
-    energy = messages.number(light.energy, who, "power", 0.0, 0.0)
+    energy = messages.number(light.energy, who, "power", 0.0)
     color = messages.color(light.color, who, "colour", 1.0)
     if getattr(light, "use_temperature", False):
         color = tuple(c * t for c, t in zip(color, light.temperature_color, strict=True))
@@ -110,7 +100,7 @@ def _power(light, graph):
     return tuple(energy * c * n for c, n in zip(color, node_color, strict=True))
 
 
-def _watts_to_emission(light, kind, radius, sun_angle, shape, size):
+def _watts_to_emission(light, kind, radius, sun_angle, area):
     """Return the factor from watts to W/sr (point, spot), W/m^2 (sun) or W/(m^2 sr) (area)."""
     normalize = getattr(light, "normalize", True)
     if kind == LightKind.SUN:
@@ -118,7 +108,6 @@ def _watts_to_emission(light, kind, radius, sun_angle, shape, size):
             return _old_sun(sun_angle)
         return 1.0 if normalize or sun_angle == 0.0 else math.pi * math.sin(0.5 * sun_angle) ** 2
     if kind == LightKind.AREA:
-        area = size[0] * size[1] * (0.25 * math.pi if shape == AreaShape.ELLIPSE else 1.0)
         if not normalize:
             return 1.0 / math.pi
         return 1.0 / (math.pi * area) if bpy.app.version >= (4, 0) else 1.0 / (4.0 * area)
@@ -173,17 +162,3 @@ def _check(thing, light, who, messages):
             f"{who}: without multiple importance sampling Cycles hides it from mirrors and glass, here they show it",
             "feature:lamp without MIS",
         )
-    if light.type == "SPOT" and _sheared(np.array(thing.matrix_world, float)):
-        messages.add(f"{who}: a sheared spot is not supported, its cone is only stretched", "feature:sheared spot")
-
-
-def _sheared(matrix):
-    """Whether the axes are not orthogonal. Parents leave errors of 1e-5 in single precision; ten times that bends a cone by
-    0.006 degrees, which is invisible.
-    """
-    columns = matrix[:3, :3].T
-    lengths = np.linalg.norm(columns, axis=1)
-    if not lengths.all():
-        return False
-    x, y, z = columns / lengths[:, None]
-    return max(abs(x @ y), abs(x @ z), abs(y @ z)) > 1e-4

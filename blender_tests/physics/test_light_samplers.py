@@ -24,6 +24,12 @@ def area(shape, size=(1.0, 0.6), matrix=None, **fields):
     return Light("lamp", matrix, LightKind.AREA, emission=(1, 1, 1), size=size, shape=shape, **fields)
 
 
+def sheared(xy=0.8, xz=0.3, yz=-0.4):
+    shear = np.eye(4)
+    shear[0, 1], shear[0, 2], shear[1, 2] = xy, xz, yz
+    return move(0.3, 0.2, 2.0) @ rotate_y(0.5) @ rotate_x(0.2) @ shear
+
+
 LIGHTS = {
     "ball": Light("lamp", move(1, 0, 2), emission=(1, 1, 1), radius=0.5, soft_falloff=False),
     "small ball": Light("lamp", move(1, 0, 2), emission=(1, 1, 1), radius=1e-3, soft_falloff=False),
@@ -42,6 +48,13 @@ LIGHTS = {
     "narrow rectangle": area(AreaShape.RECTANGLE, (3.0, 2.0), matrix=move(0.3, 0.2, 2.0), spread=0.5),
     "narrow ellipse": area(AreaShape.ELLIPSE, (1.6, 2.0), matrix=move(0.3, 0.2, 2.0), spread=0.5),
     "stretched spot": Light("lamp", move(0.2, 0, 2), LightKind.SPOT, emission=(1, 1, 1), radius=0.3, size=(1.5, 0.6)),
+    "sheared rectangle": area(AreaShape.RECTANGLE, matrix=sheared()),
+    "large sheared rectangle": area(AreaShape.RECTANGLE, (30.0, 20.0), matrix=sheared(-0.8)),
+    "small sheared rectangle": area(AreaShape.RECTANGLE, (1e-3, 2e-3), matrix=sheared()),
+    "narrow sheared rectangle": area(AreaShape.RECTANGLE, (3.0, 2.0), matrix=sheared(0.8, -0.6, 0.2), spread=0.9),
+    "sheared ellipse": area(AreaShape.ELLIPSE, matrix=sheared()),
+    "narrow sheared ellipse": area(AreaShape.ELLIPSE, (3.0, 2.0), matrix=sheared(0.8, -0.6, 0.2), spread=0.9),
+    "sheared spot": Light("lamp", sheared(), LightKind.SPOT, emission=(1, 1, 1), radius=0.3, spot_angle=2.4, size=(1.5, 0.6)),
 }
 
 

@@ -602,7 +602,7 @@ typedef struct lancer_material {
   uint32_t node_count;            /* at most 4096 */
   uint32_t material_index;        /* value of the material index pass */
   uint32_t flags;                 /* LANCER_MATERIAL_* bits */
-  lancer_parameter emission;      /* [color 0] radiance, both sides */
+  lancer_parameter emission;      /* [color 0] radiance, both sides; may be negative */
   lancer_parameter transmittance; /* [color 0] factor of light that passes straight through; lobes and emission are not
                                      scaled by it */
   lancer_parameter holdout;       /* [share 0] share of the picture that becomes a hole */
@@ -630,12 +630,15 @@ enum lancer_falloff {
 };
 
 /* A light emits along its local -z. Only the directions of the matrix's columns are used, not their lengths; sizes are world
- * lengths in the fields below. In PATH a light is visible to camera, mirror and glass rays unless it is hidden from them. */
+ * lengths in the fields below. Columns that are not orthogonal shear the sides of an AREA, which then emits along the normal of
+ * its plane, and the cone of a SPOT; other lights keep z. In PATH a light is visible to camera, mirror and glass rays unless it
+ * is hidden from them. */
 typedef struct lancer_light {
   const char *name;
   double matrix[12];
   uint32_t kind;         /* LANCER_POINT ... */
-  float emission[3];     /* POINT, SPOT: radiant intensity, W/sr. SUN: irradiance at normal incidence, W/m^2. AREA: radiance */
+  float emission[3];     /* POINT, SPOT: radiant intensity, W/sr. SUN: irradiance at normal incidence, W/m^2. AREA: radiance.
+                            Negative: takes light away */
   float radius;          /* POINT, SPOT: 0 is a true point */
   uint32_t soft_falloff; /* POINT, SPOT with radius: 1 = a disk that always faces the shaded point (E = I/(d^2 + r^2)); 0 = a
                             ball */
@@ -686,7 +689,7 @@ typedef struct lancer_world {
   const lancer_node *nodes;
   uint32_t node_count;
   uint32_t hidden_from;      /* LANCER_RAY_* bits */
-  lancer_parameter radiance; /* [color 0] */
+  lancer_parameter radiance; /* [color 0] may be negative */
   float ambient[3];          /* CLASSIC: uniform light from everywhere that Ka reflects once, independent of the lamps; see
                                 use_ambient */
   uint32_t use_ambient;      /* 0: use the mean of the radiance instead of ambient */

@@ -71,11 +71,13 @@ Light any_light(Random &random, LightKind kind, double size) {
   light.blend_width = random() % 4 ? (1.0 - light.cos_half_angle) * share(random) : 0.0;
   light.spot_cosine = random() % 2;
   light.stretch_x = random() % 2 ? 0.5 + share(random) : 1.0;
+  light.stretched = light.stretch_x != 1.0;
   light.one_minus_cos_sun = random() % 4 ? 0.5 * share(random) : 0.0;
   light.flat_radius = random() % 2 ? share(random) : 0.0;
   light.half_x = size * share(random);
   light.half_y = size * share(random);
-  light.ellipse = random() % 2;
+  light.skew = random() % 2 ? size * (share(random) - 0.5) : 0.0;
+  light.ellipse = light.skew == 0.0 && random() % 2;
   light.area = (light.ellipse ? glm::pi<double>() : 4.0) * light.half_x * light.half_y;
   light.plane_tolerance = random() % 2 ? 1e-3 : 0.0;
   if (random() % 2) {

@@ -34,7 +34,7 @@ TEST(Lights, AreMetWhereTheyAreSampled) {
   }
 }
 
-// Lamps of all shapes, from near and far, from aside, and close to their planes.
+// Rectangles and parallelograms of all shapes, from near and far, from aside, and close to their planes.
 TEST(Lights, RectanglesAreMetWithTheDensityThatTheyAreSampledWith) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> uniform(0.0f, 0x1.fffffep-1f);
@@ -46,6 +46,7 @@ TEST(Lights, RectanglesAreMetWithTheDensityThatTheyAreSampledWith) {
     light.position = {0.3, -0.2, 0.1};
     light.half_x = std::exp2(-12.0 * uniform(random));
     light.half_y = std::exp2(-12.0 * uniform(random));
+    light.skew = k % 2 ? light.half_x * (4.0 * uniform(random) - 2.0) : 0.0;
     light.area = 4.0 * light.half_x * light.half_y;
     const glm::dvec3 away(uniform(random) - 0.5, uniform(random) - 0.5, -uniform(random));
     const glm::dvec3 p = light.position + 2.0 * away;

@@ -36,9 +36,11 @@ Light any_light(Random &random, double size) {
   light.cos_half_angle = double(random.uniform());
   light.blend_width = (1.0 - light.cos_half_angle) * double(random.uniform());
   light.stretch_x = 0.5 + double(random.uniform());
+  light.stretched = true;
   light.one_minus_cos_sun = random.next() % 2 ? 0.5 * double(random.uniform()) : 0.0;
   light.half_x = 0.1 * size * double(random.uniform());
   light.half_y = 0.1 * size * double(random.uniform());
+  light.skew = random.next() % 2 ? 0.2 * size * (double(random.uniform()) - 0.5) : 0.0;
   light.area = 4.0 * light.half_x * light.half_y;
   if (random.next() % 2) {
     const double half = 0.1 + double(random.uniform());

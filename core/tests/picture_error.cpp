@@ -227,21 +227,25 @@ TEST(PictureError, WhatWasNeverMetIsBoundedByTheRuleOfThree) {
   EXPECT_NEAR(picture_error(map, RelativeVariance(map), 0.95).cannot_exclude, missing / (1.01 * mean), 1e-5);
 }
 
-TEST(PictureError, IsANumberWhereColoursFarBelowZeroAreSeen) {
+TEST(PictureError, IsTheSameForLightFarBelowZeroAndFarAbove) {
   for (const float depth : {1e10f, 1e20f, 1e28f}) {
-    Film film(kSize, kSize, 16, 1);
-    fill(film, 16, 9, [&](std::mt19937 &random, uint32_t x, uint32_t y) {
-      return x == 30 && y == 20 ? -depth * std::exp(gaussian(random)) : 0.2f + 0.1f * gaussian(random);
-    });
-    const LuminanceMap map(film);
-    const PictureError error = picture_error(map, RelativeVariance(map), 0.95);
-    EXPECT_TRUE(std::isfinite(error.high)) << depth;
-    EXPECT_TRUE(error.low <= error.error && error.error <= error.high) << depth;
-    // A single pixel causes it: a quarter of a sample's deviation, which is about its depth but at most 1e15 means, over a
-    // hundredth of the mean. The interval extends seven times below; the rest of 0.036 is for chance.
-    EXPECT_GT(error.low, 0.012 * std::min(double(depth) / 0.2, 1e15) / 0.01 / kSize) << depth;
-    for (const float bar : error_bars(map))
-      ASSERT_TRUE(std::isfinite(bar)) << depth;
+    PictureError errors[2];
+    for (const bool below : {false, true}) {
+      Film film(kSize, kSize, 16, 1);
+      fill(film, 16, 9, [&](std::mt19937 &random, uint32_t x, uint32_t y) {
+        const float light = x == 30 && y == 20 ? depth * std::exp(gaussian(random)) : 0.2f + 0.1f * gaussian(random);
+        return below ? -light : light;
+      });
+      const LuminanceMap map(film);
+      errors[below] = picture_error(map, RelativeVariance(map), 0.95);
+      for (const float bar : error_bars(map))
+        ASSERT_TRUE(std::isfinite(bar)) << depth;
+    }
+    EXPECT_TRUE(std::isfinite(errors[1].high) && errors[1].low > 0.0) << depth;
+    EXPECT_EQ(errors[1].low, errors[0].low) << depth;
+    EXPECT_EQ(errors[1].error, errors[0].error) << depth;
+    EXPECT_EQ(errors[1].high, errors[0].high) << depth;
+    EXPECT_EQ(errors[1].cannot_exclude, errors[0].cannot_exclude) << depth;
   }
 }
 

@@ -5,7 +5,7 @@ import math
 import bpy
 
 from .. import parts
-from .catalogue import variants
+from .catalogue import case, variants
 from .lights_switches import emission_nodes, with_light_field
 from .nodes import shader
 
@@ -36,6 +36,7 @@ _LAMPS = {
     "point_scaled": {"kind": "POINT", "shadow_soft_size": 0.4, "scale": (2.0, 2.0, 2.0)},
     "spot_hard": {"kind": "SPOT", "shadow_soft_size": 0.0, "spot_size": 1.0, "spot_blend": 0.0},
     "spot_soft": {"kind": "SPOT", "shadow_soft_size": 0.5, "spot_size": 1.0, "spot_blend": 0.0},
+    "spot_mirrored": {"kind": "SPOT", "shadow_soft_size": 0.0, "spot_size": 0.5, "spot_blend": 1.0, "scale": (-2.0, 1.0, 1.0)},
     "spot_wide": {"kind": "SPOT", "shadow_soft_size": 0.2, "spot_size": math.radians(175), "spot_blend": 0.3},
     "sun_hard": {"kind": "SUN", "angle": 0.0},
     "sun_soft": {"kind": "SUN", "angle": 0.2},
@@ -46,6 +47,7 @@ _LAMPS = {
     "area_disk": {"kind": "AREA", "shape": "DISK", "size": 1.2},
     "area_ellipse": {"kind": "AREA", "shape": "ELLIPSE", "size": 2.0, "size_y": 0.7},
     "area_scaled": {"kind": "AREA", "shape": "ELLIPSE", "size": 1.0, "size_y": 1.0, "scale": (2.0, 0.5, 3.0)},
+    "area_mirrored": {"kind": "AREA", "shape": "RECTANGLE", "size": 1.0, "size_y": 1.0, "scale": (-2.0, 0.5, 1.0)},
     "area_spread": {"kind": "AREA", "shape": "SQUARE", "size": 0.8, "spread": math.radians(60)},
     "area_spread_disk": {"kind": "AREA", "shape": "DISK", "size": 0.8, "spread": math.radians(100)},
 }
@@ -73,6 +75,36 @@ def light_true_sphere(scene, kind):
         light.use_soft_falloff = False
 
 
+def _turned(scene, kind, scale):
+    """A lamp that faces away, which a scale turns round again."""
+    lamp = _lamp(scene, kind, scale)
+    lamp.rotation_euler.rotate_axis("X", math.pi)
+    return lamp
+
+
+@variants("LIGHT", values={"spot": "SPOT", "sun": "SUN", "area": "AREA"}, **_FIELDS)
+def light_inside_out(scene, kind):
+    _turned(scene, kind, (-1.0, -1.0, -1.0))
+
+
+# Without the tree Cycles asks lamps that give no light as often as others.
+_FLAT = {"point": "POINT", "spot": ("SPOT", {"quick": False}), "sun": "SUN", "area": "AREA"}
+
+
+@variants("LIGHT", since=(4, 0), values=_FLAT, **_FIELDS)
+def light_flattened(scene, kind):
+    """Beside a sun, a lamp that is scaled to 0 along each axis in turn; the tree of lights is off, as in all these scenes."""
+    _spot(scene)
+    parts.add_light(scene, "Base", "SUN", 1.0, (0.5, 0.5, 3.0), angle=0.0)
+    # Without the tree a spot that is flat along z shines to all sides, with it to none.
+    for axis in range(2 if kind == "SPOT" else 3):
+        energy = 1.0 if kind == "SUN" else 50.0
+        lamp = parts.add_light(scene, f"Light {axis}", kind, energy, (1.2, -0.8, 2.5 + 0.1 * axis))
+        if kind in ("POINT", "SPOT"):
+            lamp.data.shadow_soft_size = 0.0
+        lamp.scale = [0.0 if axis == other else 1.5 for other in range(3)]
+
+
 _KINDS = {
     "point": {"kind": "POINT", "shadow_soft_size": 0.3},
     "spot": {"kind": "SPOT", "shadow_soft_size": 0.3, "spot_size": 1.2},
@@ -94,6 +126,33 @@ def light_exposure(scene, fields):
 @variants("LIGHT", values=_KINDS, needs=with_light_field("use_temperature"), **_FIELDS)
 def light_temperature(scene, fields):
     _lamp(scene, use_temperature=True, temperature=2700.0, **fields)
+
+
+# Cycles needs a thousand samples where an area lamp takes most of the light away.
+@variants("LIGHT", values={**_KINDS, "area": (_KINDS["area"], {"quick": False})}, **_FIELDS)
+def light_negative(scene, fields):
+    """A lamp that takes away a part of what a sun gives."""
+    lamp = _lamp(scene, **fields)
+    lamp.data.energy *= -0.2
+    parts.add_light(scene, "Base", "SUN", 3.0, (0.5, 0.5, 3.0), angle=0.0)
+
+
+@variants("LIGHT", values={"nodes": True, "alone": False}, **_FIELDS)
+def light_negative_strength(scene, nodes):
+    """By its Emission node; and beside no other lamp, where all is below 0."""
+    lamp = _lamp(scene, **_KINDS["point"])
+    if nodes:
+        emission_nodes(lamp.data, lambda nodes: {"Color": (0.3, 0.9, 0.5), "Strength": -0.5})
+        parts.add_light(scene, "Base", "SUN", 3.0, (0.5, 0.5, 3.0), angle=0.0)
+    else:
+        lamp.data.energy *= -1.0
+
+
+@case("LIGHT", **_FIELDS)
+def light_negative_sky(scene):
+    _spot(scene)
+    parts.add_light(scene, "Base", "SUN", 3.0, (0.5, 0.5, 3.0), angle=0.0)
+    parts.set_world(scene, (0.3, 0.4, 0.5), -0.5)
 
 
 @variants("LIGHT", values=_KINDS, **_FIELDS)
@@ -120,3 +179,11 @@ def light_mesh(scene, scale):
     _spot(scene)
     glow = shader("ShaderNodeEmission", Color=(1.0, 0.7, 0.4), Strength=20.0)
     parts.place(scene, "Glow", parts.plane_mesh("Glow", 1.0), glow, (1.0, -0.6, 1.8), scale, rotation=(0.4, 0.5, 0))
+
+
+@case("LIGHT", **{**_FIELDS, "quick": False})
+def light_negative_mesh(scene):
+    _spot(scene)
+    parts.add_light(scene, "Base", "SUN", 3.0, (0.5, 0.5, 3.0), angle=0.0)
+    glow = shader("ShaderNodeEmission", Color=(1.0, 0.7, 0.4), Strength=-5.0)
+    parts.place(scene, "Glow", parts.plane_mesh("Glow", 1.0), glow, (1.0, -0.6, 1.8), rotation=(0.4, 0.5, 0))

@@ -2,6 +2,7 @@
 
 import bpy
 import stage
+from mathutils import Matrix
 
 from addon.export.lights import export_light
 from addon.messages.messages import Messages
@@ -61,6 +62,26 @@ def export():
     _export(textured, lost)
     result["textured"] = lost.lines()
     return result
+
+
+def transforms():
+    """{kind and transform: [matrix or None, share of the plain lamp's emission, messages]}."""
+    stage.empty()
+    flat = {f"flat {axis}": Matrix.Diagonal([float(i != k) for k in range(3)] + [1.0]) for i, axis in enumerate("xyz")}
+    sheared = Matrix.Identity(4)
+    sheared[0][1], sheared[0][2] = 0.75, 0.5
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    result = {}
+    for kind in ("POINT", "SPOT", "SUN", "AREA"):
+        thing = stage.light(kind, location=(0, 0, 0))
+        plain = export_light(thing, Matrix.Identity(4), Messages(), depsgraph)
+        for name, matrix in {**flat, "sheared": sheared, "mirrored": Matrix.Diagonal((-1.0, 1.0, 1.0, 1.0))}.items():
+            messages = Messages()
+            light = export_light(thing, matrix, messages, depsgraph)
+            shown = None if light is None else light.matrix[:, :3].tolist()
+            share = 0.0 if light is None else light.emission[0] / plain.emission[0]
+            result[f"{kind} {name}"] = [shown, share, messages.lines()]
+    return {"version": list(bpy.app.version), "lamps": result}
 
 
 def unknown():

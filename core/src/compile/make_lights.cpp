@@ -25,6 +25,63 @@ void set_axes(Light &light, const Affine &map) {
     light.y = -light.y;
 }
 
+// Cosine between columns above which a matrix is sheared. Float matrices under parents without shear stay below 1e-5; a shear
+// of ten times that is not visible.
+constexpr double kSheared = 1e-4;
+
+glm::dmat3 unit_columns(const glm::dmat3 &m) { return {unit_or_zero(m[0]), unit_or_zero(m[1]), unit_or_zero(m[2])}; }
+
+bool is_sheared(const glm::dmat3 &unit) {
+  const auto along = [&](int i, int k) { return std::abs(glm::dot(unit[i], unit[k])); };
+  return std::max({along(0, 1), along(0, 2), along(1, 2)}) > kSheared;
+}
+
+// Shears an area light: its sides are the columns x and y, and it emits along the normal of its plane, to the side of -z.
+void shear_area(Light &light, const glm::dmat3 &unit) {
+  const glm::dvec3 normal = unit_or_zero(glm::cross(unit[0], unit[1]));
+  if (normal == glm::dvec3(0.0)) {
+    light.half_y = 0.0;
+    return;
+  }
+  light.z = glm::dot(normal, unit[2]) < 0.0 ? -normal : normal;
+  light.x = unit[0];
+  light.y = glm::cross(light.z, light.x);
+  const glm::dvec2 side(glm::dot(unit[1], light.x), std::abs(glm::dot(unit[1], light.y)));
+  if (glm::dot(unit[1], light.y) < 0.0)
+    light.y = -light.y;
+  light.skew = light.half_y * side.x;
+  light.half_y *= side.y;
+  if (!light.ellipse)
+    return;
+  // A skewed ellipse is an ellipse about other axes: the eigenvectors of the matrix of its half axes times its transpose.
+  const double x = light.half_x, y = light.half_y, s = light.skew;
+  const double apart = x * x + s * s - y * y, across = 2.0 * s * y, root = std::sqrt(apart * apart + across * across);
+  const double longer = std::sqrt(0.5 * (x * x + s * s + y * y + root));
+  light.skew = 0.0;
+  if (!(root > 0.0))
+    return;
+  const double c = std::sqrt(0.5 + 0.5 * apart / root), d = std::copysign(std::sqrt(0.5 - 0.5 * apart / root), across);
+  const glm::dvec3 turned_x = c * light.x + d * light.y, turned_y = c * light.y - d * light.x;
+  light.x = turned_x;
+  light.y = turned_y;
+  light.half_x = longer;
+  light.half_y = x * y / longer;
+}
+
+// Shears the cone of a spot: directions are looked at in the space of its columns, where the cone is round.
+void shear_cone(Light &light, const glm::dmat3 &unit) {
+  const glm::dmat3 columns(light.stretch_x * unit[0], light.stretch_y * unit[1], unit[2]);
+  if (std::abs(glm::determinant(columns)) == 0.0)
+    return;
+  const glm::dmat3 rows = glm::transpose(glm::inverse(columns));
+  light.skewed_cone = true;
+  light.x = glm::normalize(rows[0]);
+  light.y = glm::normalize(rows[1]);
+  light.z = glm::normalize(rows[2]);
+  light.stretch_x = glm::length(rows[2]) / glm::length(rows[0]);
+  light.stretch_y = glm::length(rows[2]) / glm::length(rows[1]);
+}
+
 // Upper bound of the tolerance, in normalised units; the scene is at least 512 wide. With it, a scene far from the origin keeps
 // the shadows of objects right before a lamp.
 constexpr double kMostApart = 0x1p-7;
@@ -46,6 +103,8 @@ Light place_light(const LightDescription &from, const Normalisation &normalisati
   light.kind = from.kind;
   light.position = normalisation.to_normalised(from.to_world.translation);
   set_axes(light, from.to_world);
+  const glm::dmat3 columns = unit_columns(from.to_world.linear);
+  const bool sheared = is_sheared(columns);
   light.emission = glm::dvec3(from.emission);
   // Irradiance is intensity over distance squared: lengths scale, so intensity scales with their square.
   if (from.kind == LightKind::Point || from.kind == LightKind::Spot)
@@ -58,6 +117,9 @@ Light place_light(const LightDescription &from, const Normalisation &normalisati
     light.spot_cosine = from.spot_cosine;
     light.stretch_x = double(from.size.x);
     light.stretch_y = double(from.size.y);
+    if (sheared)
+      shear_cone(light, columns);
+    light.stretched = sheared || light.stretch_x != 1.0 || light.stretch_y != 1.0;
   }
   // A flat disk cannot fill half of the sky.
   const double sun_angle = from.sun_flat ? std::min(double(from.sun_angle), glm::radians(179.9)) : double(from.sun_angle);
@@ -73,6 +135,8 @@ Light place_light(const LightDescription &from, const Normalisation &normalisati
   light.ellipse = from.shape == AreaShape::Ellipse;
   if (from.kind == LightKind::Area)
     light.plane_tolerance = apart_by_rounding(from, scale);
+  if (from.kind == LightKind::Area && sheared)
+    shear_area(light, columns);
   light.area = (light.ellipse ? glm::pi<double>() : 4.0) * light.half_x * light.half_y;
   if (from.spread < glm::pi<float>()) {
     const double half = 0.5 * std::max(double(from.spread), 1e-3);

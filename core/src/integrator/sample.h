@@ -120,12 +120,19 @@ struct Energy {
   // two bounces. Once indirect light has spread, it falls off at least as fast as this series. Returns infinity if the last
   // bounce finds no less light than the bounce before.
   double beyond() const {
-    if (last <= 0.0)
+    // Lights of negative emission find negative light.
+    const double found = std::abs(last), before = std::abs(before_last);
+    if (found <= 0.0)
       return 0.0;
-    return last < before_last ? last * last / (before_last - last) : std::numeric_limits<double>::infinity();
+    return found < before ? found * found / (before - found) : std::numeric_limits<double>::infinity();
   }
+<<<<<<< HEAD
   // Ignores values that are not finite, because the film drops their sample.
   void clip(double light) { clipped += std::isfinite(light) ? light : 0.0; }
+=======
+  // Ignores values that are not finite: their sample is dropped.
+  void clip(double light) { clipped += std::isfinite(light) ? std::abs(light) : 0.0; }
+>>>>>>> 89a6ee1 (Shear, flatten and negate lamps as their transform and power say)
   Energy &operator+=(const Energy &other) {
     clipped += other.clipped;
     last += other.last;

@@ -47,7 +47,7 @@ bool is_light(const Material &material) { return material.emits() && !(material.
 bool emission_varies(const Material &material) { return material.emission.varies() || material.layered_emission; }
 
 double emission_level(const glm::vec3 &radiance) {
-  const double level = brightest(radiance) > 0.0 ? double(mean(glm::abs(radiance))) : 0.0;
+  const double level = double(mean(glm::abs(radiance)));
   return std::isfinite(level) ? level : 0.0;
 }
 

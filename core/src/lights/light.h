@@ -27,10 +27,14 @@ struct Light {
   bool soft_falloff = true;
   double cos_half_angle = -1.0, blend_width = 0.0; // SPOT
   bool spot_cosine = false;
-  double stretch_x = 1.0, stretch_y = 1.0;       // SPOT: of the cone's cross-section
+  // SPOT: of the cone's cross-section. Where the cone is skewed, x, y and z are not orthogonal: a direction has the local
+  // coordinates dot(x) / stretch_x, dot(y) / stretch_y and dot(z), and the cone lies before the plane of normal z.
+  double stretch_x = 1.0, stretch_y = 1.0;
+  bool stretched = false, skewed_cone = false;
   double one_minus_cos_sun = 0.0;                // SUN: 1 - cos of half its angle
   double flat_radius = 0.0;                      // SUN: radius of the flat disk at distance 1; 0 = uniform radiance
   double half_x = 0.0, half_y = 0.0, area = 0.0; // AREA
+  double skew = 0.0;                             // AREA: how far along x the side at half_y lies from that of a rectangle
   bool ellipse = false;
   double tan_half_spread = 0.0, spread_scale = 0.0; // AREA; scale 0 = no limit
   double plane_tolerance = 0.0; // AREA: a face at most this far before the lamp's plane is meant to lie in the plane

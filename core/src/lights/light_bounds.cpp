@@ -1,6 +1,5 @@
 #include "lights/light_bounds.h"
 
-#include "sampling/color.h"
 #include "sampling/elementary.h"
 
 #include <algorithm>
@@ -96,13 +95,14 @@ constexpr double kPad = 0x1p-22;
 // Lamps further away than this are placed at this distance, because float cannot represent much larger coordinates.
 constexpr double kFarthest = 1e30;
 
-// Returns the mean of the channels' absolute values, as in Cycles; 0 where no channel is positive.
-double level(const glm::dvec3 &emission) {
-  return brightest(emission) > 0.0 ? (std::abs(emission.x) + std::abs(emission.y) + std::abs(emission.z)) / 3.0 : 0.0;
-}
+// Returns the mean of the channels' absolute values, as in Cycles: light that is taken away counts as much as light that is
+// given.
+double level(const glm::dvec3 &emission) { return (std::abs(emission.x) + std::abs(emission.y) + std::abs(emission.z)) / 3.0; }
 
-// Returns half of the widest opening angle of a spot.
+// Returns half of the widest opening angle of a spot; of a skewed cone the angle of the half-space that contains it.
 double spot_reach(const Light &light) {
+  if (light.skewed_cone)
+    return 0.5 * kPi;
   const double half = acos(std::clamp(light.cos_half_angle, 0.0, 1.0));
   return half < 0.5 * kPi - 1e-6 ? atan(tan(half) * std::max(light.stretch_x, light.stretch_y)) : 0.5 * kPi;
 }
@@ -160,18 +160,21 @@ DescribedLight describe(const Light &light, uint32_t number) {
     if (!(light.cos_half_angle < 1.0))
       bounds.energy = 0.0;
     break;
-  case LightKind::Area:
+  case LightKind::Area: {
+    glm::dvec3 side_y = light.half_y * light.y;
+    if (light.skew != 0.0)
+      side_y += light.skew * light.x;
     known.kind = TreeLight::Kind::Area;
     known.u = glm::vec3(light.half_x * light.x);
-    known.v = glm::vec3(light.half_y * light.y);
+    known.v = glm::vec3(side_y);
     for (int corner = 0; corner < 4; ++corner)
-      bounds.grow(light.position + (corner & 1 ? light.half_x : -light.half_x) * light.x +
-                  (corner & 2 ? light.half_y : -light.half_y) * light.y);
+      bounds.grow(light.position + (corner & 1 ? light.half_x : -light.half_x) * light.x + (corner & 2 ? side_y : -side_y));
     if (light.spread_scale != 0.0)
       bounds.cone.theta_e = atan(light.tan_half_spread);
     known.cos_e = float(cos(bounds.cone.theta_e));
     bounds.energy *= light.area;
     break;
+  }
   case LightKind::Sun:
     known.kind = TreeLight::Kind::Sun;
     known.axis = glm::vec3(light.z);

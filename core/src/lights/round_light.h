@@ -16,12 +16,11 @@ LANCER_LANE DoubleOf<F> spot_attenuation(const L<F> &light, const Double3Of<F> &
   const D one(1.0), zero(0.0);
   if (!any(spot))
     return one;
-  const D stretch_x = light[&Light::stretch_x], stretch_y = light[&Light::stretch_y];
   D cosine = dot(wi, light[&Light::z]);
-  const MaskOf<F> stretched = (stretch_x != one) | (stretch_y != one);
+  const MaskOf<F> stretched = light[&Light::stretched];
   if (any(stretched & spot)) {
     // Map the direction to a space in which the cone is round.
-    const D x = dot(wi, light[&Light::x]) / stretch_x, y = dot(wi, light[&Light::y]) / stretch_y;
+    const D x = dot(wi, light[&Light::x]) / light[&Light::stretch_x], y = dot(wi, light[&Light::y]) / light[&Light::stretch_y];
     cosine = select(stretched, cosine / sqrt(x * x + y * y + cosine * cosine), cosine);
   }
   const D inside = cosine - light[&Light::cos_half_angle], blend = light[&Light::blend_width];

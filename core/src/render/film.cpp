@@ -222,7 +222,7 @@ void Film::keep_differences(const Sums &earlier, uint32_t level, Sums &later) co
 void Film::gather(std::span<const SampleResult> results, Sums &sums, float *brightest) const {
   double *to = sums.channels.data();
   for (const SampleResult &result : results) {
-    *brightest = std::max(*brightest, luminance(result.radiance));
+    *brightest = std::max(*brightest, std::abs(luminance(result.radiance)));
     ++brightest;
     // The picture comes first, and is mostly the only pass.
     const float *numbers = numbers_of(result);

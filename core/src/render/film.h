@@ -45,7 +45,7 @@ public:
     // Indexed by bit of count. If the bit is not set, the level is empty or its content is meaningless.
     std::vector<Sums> levels;
     std::vector<float> first;      // [pixel][channel of sample 0]
-    std::vector<float> brightest;  // [pixel] largest luminance of a sample
+    std::vector<float> brightest;  // [pixel] largest luminance of a sample, by its absolute value
     std::vector<uint64_t> dropped; // by the bit width of the sample's number; empty where none was dropped
     SampleAddress first_dropped{0, 0, 0};
     mutable std::mutex mutex;

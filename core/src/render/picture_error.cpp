@@ -10,9 +10,14 @@ namespace lancer {
 
 namespace {
 
+<<<<<<< HEAD
 // Bound of luminances, in units of the picture's mean. No positive luminance comes near this bound; negative colours, which the
 // mean ignores, may exceed it. With this bound, sums of squares over a neighbourhood, divided by a hundredth squared, fit into
 // floats.
+=======
+// In units of the mean, which no pixel exceeds by more than the number of pixels. Sums of squares over a neighbourhood, divided
+// by a hundredth squared, still fit into floats.
+>>>>>>> 89a6ee1 (Shear, flatten and negate lamps as their transform and power say)
 constexpr double kMost = 1e15;
 
 } // namespace
@@ -30,7 +35,7 @@ LuminanceMap::LuminanceMap(const Film &film) : width(film.width()), height(film.
       known = false;
     else
       for (const Film::Luminance &luminance : luminances)
-        sum += std::max(luminance.mean, 0.0);
+        sum += std::abs(luminance.mean);
   }
   dark = !(sum > 0.0);
   unit = dark ? 1.0 : sum / double(pixels);
@@ -179,7 +184,7 @@ double unmet(const LuminanceMap &map) {
         for (uint32_t x = x0; x < x1; ++x) {
           const size_t i = size_t(y) * map.width + x;
           samples += map.count[i];
-          mean += std::max(map.mean[i], 0.0f);
+          mean += double(std::abs(map.mean[i]));
           brightest = std::max(brightest, double(map.brightest[i]));
         }
       const double pixels = double(x1 - x0) * (y1 - y0), level = mean / pixels + floor;
@@ -198,7 +203,7 @@ RelativeVariance::RelativeVariance(const LuminanceMap &map) : own(map.size()), s
   const SimilarNeighbours similar(map);
   const float floor = map.floor();
   for (size_t pixel = 0; pixel < map.size(); ++pixel) {
-    const float level = std::max(similar.mean[pixel] / similar.count[pixel], 0.0f) + floor;
+    const float level = std::abs(similar.mean[pixel] / similar.count[pixel]) + floor;
     const float scale = level > 0.0f ? 1.0f / (level * level) : 0.0f;
     own[pixel] = map.variance[pixel] * scale;
     shared[pixel] = similar.variance[pixel] / similar.count[pixel] * scale;

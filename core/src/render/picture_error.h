@@ -14,7 +14,7 @@ namespace lancer {
 struct LuminanceMap {
   uint32_t width = 0, height = 0;
   bool known = true; // false: some pixel has too few samples to estimate an error
-  double unit = 1.0; // mean luminance of the picture, negative values taken as 0; 1 where the picture is black
+  double unit = 1.0; // mean absolute luminance of the picture's pixels; 1 where the picture is black
   // [height][width]; variance: of one sample; the variance of the mean is variance / count.
   std::vector<float> mean, variance, brightest, count;
 

@@ -277,7 +277,7 @@ SessionError Session::error(double confidence) const {
     result.picture = picture_error(map, RelativeVariance(map), confidence);
   double light = 0.0, samples = 0.0;
   for (size_t i = 0; i < map.size(); ++i) {
-    light += std::max(0.0, double(map.mean[i])) * map.unit * map.count[i];
+    light += std::abs(double(map.mean[i])) * map.unit * map.count[i];
     samples += double(map.count[i]);
   }
   std::tie(result.least_samples, result.most_samples) = film_.sample_range();

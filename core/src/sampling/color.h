@@ -14,7 +14,4 @@ template <class T> T luminance(const glm::vec<3, T> &v) { return T(0.2126f) * v.
 
 template <class V> LANCER_LANE NumberOf<V> largest(const V &v) { return max(max(v.x, v.y), v.z); }
 
-// Returns the largest component; negative light counts as 0.
-inline double brightest(const glm::dvec3 &v) { return std::max({0.0, v.x, v.y, v.z}); }
-
 } // namespace lancer

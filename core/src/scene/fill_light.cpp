@@ -17,7 +17,8 @@ namespace {
 constexpr double kBrightestDisk = 1e36;
 
 double disk_radiance(const glm::vec3 &emission, double radius) {
-  return double(std::max({emission.x, emission.y, emission.z})) / (glm::pi<double>() * radius * radius);
+  const glm::vec3 size = glm::abs(emission);
+  return double(std::max({size.x, size.y, size.z})) / (glm::pi<double>() * radius * radius);
 }
 
 class LightReader {
@@ -25,7 +26,7 @@ public:
   LightReader(std::string object, Messages &messages) : object_(std::move(object)), messages_(messages) {}
 
   float read(const char *what, float value, float low, float high) {
-    const float used = std::isnan(value) ? low : std::clamp(value, low, high);
+    const float used = std::isnan(value) ? std::max(low, 0.0f) : std::clamp(value, low, high);
     if (!(value == used)) {
       messages_.add(object_, std::string(what) + " " + to_text(value) + " was replaced by " + to_text(used));
     }
@@ -41,9 +42,9 @@ public:
     return 0.0f;
   }
 
-  glm::vec3 read(const char *what, const float value[3]) {
-    return {read(what, value[0], 0.0f, kBrightest), read(what, value[1], 0.0f, kBrightest),
-            read(what, value[2], 0.0f, kBrightest)};
+  glm::vec3 read(const char *what, const float value[3], float low = 0.0f) {
+    return {read(what, value[0], low, kBrightest), read(what, value[1], low, kBrightest),
+            read(what, value[2], low, kBrightest)};
   }
 
 private:
@@ -72,7 +73,8 @@ void add_light(Description &description, const lancer_light &source) {
     light.to_world = Affine{};
   } else {
     LightReader reader(object, description.messages);
-    light.emission = reader.read("emission", source.emission);
+    // A negative emission takes light away.
+    light.emission = reader.read("emission", source.emission, -kBrightest);
     light.radius = reader.read("radius", source.radius, 0.0f, kBrightest);
     if (light.kind == LightKind::Point || light.kind == LightKind::Spot)
       light.radius = reader.not_too_small("radius", light.radius, double(light.radius), light.emission);
@@ -115,8 +117,8 @@ void set_world(Description &description, const lancer_world &source) {
   check_reference("world", "radiance", source.radiance, world.program);
   for (int i = 0; i < 3; ++i) {
     const float value = source.radiance.value[i];
-    if (source.radiance.node < 0 && (!std::isfinite(value) || value < 0.0f))
-      bad_argument("world: radiance " + to_text(value) + " must be finite and not negative");
+    if (source.radiance.node < 0 && !std::isfinite(value))
+      bad_argument("world: radiance " + to_text(value) + " must be finite");
     world.radiance.value[i] = value;
   }
   if (source.use_ambient) {

@@ -207,7 +207,7 @@ void add_material(Description &description, const lancer_material &source) {
   const MaterialReader reader(object, material.program, messages);
   for (uint32_t i = 0; i < source.lobe_count; ++i)
     material.lobes.push_back(read_lobe(reader, source.lobes[i]));
-  material.emission = reader.read_color("emission", source.emission);
+  material.emission = reader.read_vector("emission", source.emission);
   material.transmittance = reader.read_color("transmittance", source.transmittance);
   material.holdout = reader.read_share("holdout", source.holdout);
   material.ambient = reader.read_color("ambient", source.ambient);

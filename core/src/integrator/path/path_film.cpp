@@ -38,7 +38,7 @@ void PathFilm::clamp(uint32_t slot) {
   for (uint32_t branch = 0; branch < settings_.splits.paths; ++branch) {
     const glm::vec3 found = shared + paths * indirect_[slot * places() + branch];
     float share = 1.0f;
-    if (const float top = largest(found); top > settings_.clamp_indirect) {
+    if (const float top = largest(glm::abs(found)); top > settings_.clamp_indirect) {
       factor = share = settings_.clamp_indirect / top;
       energy.clip(double(luminance(found)) * (1.0 - double(share)) / double(paths));
     }
@@ -64,7 +64,7 @@ void PathFilm::add(const Path &path, const glm::vec3 &radiance, bool environment
     result.albedo += guides_[path.slot].beta * radiance;
   // Light seen through clear glass is in no pass of indirect light: clamp it separately.
   if (path.in_view) {
-    const float top = largest(radiance), limit = settings_.clamp_indirect / float(path.sharers);
+    const float top = largest(glm::abs(radiance)), limit = settings_.clamp_indirect / float(path.sharers);
     const glm::vec3 seen = indirect && limit > 0.0f && top > limit ? radiance * (limit / top) : radiance;
     energy.clip(double(luminance(radiance - seen)));
     result.radiance += seen;
