@@ -1,1 +1,1 @@
-"""The measuring programs, each with tests of its own."""
+"""The measuring programs; each has its own tests."""

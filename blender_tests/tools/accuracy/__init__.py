@@ -1,1 +1,1 @@
-"""Is the error that renders tell true: `make accuracy`."""
+"""Is the error that renders report true: `make accuracy`."""

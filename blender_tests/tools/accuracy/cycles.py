@@ -1,4 +1,4 @@
-"""start.py accuracy.cycles measure JSON: what the noise threshold of Cycles comes to, inside Blender's Python module."""
+"""start.py accuracy.cycles measure JSON: the errors of Cycles with a noise threshold, inside Blender's Python module."""
 
 from pathlib import Path
 
@@ -15,14 +15,14 @@ from . import figures
 
 _REFERENCE_PARTS = 4
 _REFERENCE_SEED = 1001
-# Blender's own.
+# Blender's default.
 _MOST_SAMPLES = 4096
 
 
 def render(scene, samples, seed):
-    """Luminances as Cycles renders them. How many samples it took for them it does not tell: its pass has shares."""
+    """Return the luminances that Cycles renders. Their samples are unknown: the pass of sample counts has only shares."""
     worker.set_samples(scene, samples, seed)
-    # Row 0 above, as references that are kept have it.
+    # Row 0 is the top row, as in the files of references.
     return luminance(press_f12(scene).picture[::-1])
 
 
@@ -50,7 +50,7 @@ def measure(name, threads, width, height, folder, seeds=8, thresholds=(0.05, 0.0
 
 
 def _reference(scene, name, folder, samples):
-    """Without a threshold; each part is kept."""
+    """Return the reference, rendered without a threshold; each part is kept in a file."""
     scene.cycles.use_adaptive_sampling = False
     count = samples // _REFERENCE_PARTS
     for number in range(_REFERENCE_PARTS):

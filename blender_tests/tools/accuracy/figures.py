@@ -1,6 +1,6 @@
-"""How true a told error is: what lies inside its bar, what is biased. Arrays in, numbers out.
+"""The truth of error estimates: the pixels inside their error bars, and biases. Functions of arrays that return numbers.
 
-A reference's own noise is added to bars.
+The noise of the reference is added to the error bars.
 """
 
 import numpy as np
@@ -12,16 +12,16 @@ BLOCK = 16
 
 
 def inside(picture, bars, reference):
-    """Which pixels lie within 1.96 standard errors of the truth."""
+    """Return which pixels lie within 1.96 standard errors of the truth."""
     reach = BAR * np.sqrt(np.asarray(bars, np.float64) ** 2 + reference.variance)
     return np.abs(picture - reference.mean) <= reach + ROUNDING * np.abs(reference.mean)
 
 
 def scores(pictures, reference):
-    """Difference of two means of independent pictures, (count, ...) each, in standard errors of a Gaussian.
+    """Return the difference of two means of independent pictures, (count, ...) each, in standard errors of a Gaussian.
 
-    Few pictures know their spread badly: Welch's t is turned into the Gaussian number of equal chance (Wallace, "Bounds on
-    normal approximations to Student's and the chi-square distributions", 1959).
+    The spread of few pictures is uncertain: Welch's t is converted to the Gaussian number of equal probability (Wallace,
+    "Bounds on normal approximations to Student's and the chi-square distributions", 1959).
     """
     a, b = pictures.var(axis=0, ddof=1) / len(pictures), reference.var(axis=0, ddof=1) / len(reference)
     difference = pictures.mean(axis=0) - reference.mean(axis=0)
@@ -34,7 +34,7 @@ def scores(pictures, reference):
 
 
 def blocks(pictures):
-    """Means over squares of 16 x 16, what is left over at the edges counted with their neighbours: (count, rows, columns)."""
+    """Return the means of blocks of 16 x 16, (count, rows, columns); blocks at the edges include the remaining pixels."""
     height, width = pictures.shape[1:]
     rows, columns = (np.arange(max(1, size // BLOCK)) * BLOCK for size in (height, width))
     sums = np.add.reduceat(np.add.reduceat(pictures, rows, axis=1), columns, axis=2)
@@ -42,9 +42,9 @@ def blocks(pictures):
 
 
 def bias(pictures, reference):
-    """z of the whole picture and of its blocks; and how much the mean of all pictures is off, with its standard error.
+    """Return z of the whole picture and of its blocks, and the bias of the mean of all pictures with its standard error.
 
-    off: of a block, as errors are told: over its luminance and 1 % of the picture's mean.
+    off: the bias of each block, relative like errors: to its luminance plus 1 % of the picture's mean.
     """
     whole = scores(pictures.mean(axis=(1, 2)), reference.parts.mean(axis=(1, 2)))
     of_blocks, true_blocks = blocks(pictures), blocks(reference.parts)

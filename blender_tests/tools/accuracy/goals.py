@@ -1,4 +1,4 @@
-"""What the figures of all scenes say together, against what was promised."""
+"""Compare the figures of all scenes together with the goals."""
 
 import math
 
@@ -8,7 +8,7 @@ from tools.harness.verdicts import Verdict
 
 
 def judge(scenes):
-    """scenes: what accuracy_runs measured, by name."""
+    """Return the Verdicts. scenes: the figures of each scene, by name."""
     even = [run for scene in scenes.values() for run in scene["even"].values()]
     targets = [run for scene in scenes.values() for run in scene["targets"]]
     if not even:
@@ -19,7 +19,7 @@ def judge(scenes):
 
 
 def shares(runs):
-    """Of pixels inside their bar, picture by picture; of those that have noise."""
+    """Return the shares of noisy pixels that lie inside their error bar, picture by picture."""
     return [share for run in runs for share in run["inside"] if share is not None]
 
 
@@ -51,7 +51,7 @@ def _whole(runs, of=""):
 
 
 def allowed(count):
-    """As many of count Gaussian numbers lie beyond 4 standard deviations with a chance of at least a thousandth."""
+    """Return the most of count Gaussian numbers that lie beyond 4 standard deviations with a probability of 0.001 or more."""
     expected = count * math.erfc(4.0 / math.sqrt(2.0))
     most, term = 0, math.exp(-expected)
     below = term
@@ -73,5 +73,5 @@ def _blocks(runs, of=""):
 
 
 def _beyond(bias):
-    """How far the blocks are off that chance does not explain."""
+    """Return the biases of the blocks beyond |z| 4, which chance does not explain."""
     return [share for z, share in zip(bias["blocks"], bias["off"], strict=True) if abs(z) > 4]

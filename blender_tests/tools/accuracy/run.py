@@ -1,8 +1,8 @@
-"""`make accuracy`: is the error that renders tell true? build/accuracy/index.html.
+"""`make accuracy`: is the error that renders report true? build/accuracy/index.html.
 
-Twenty scenes, many seeds, references that converged: what lies inside its bar, what the interval holds, which targets are met,
-and whether anything is biased. What a scene has been measured at is kept, so a run that was broken off goes on where it ended.
-Beside it, for the record, the same for the noise threshold of Cycles.
+Twenty scenes, many seeds and converged references: the share of pixels inside their error bars, of errors inside the interval,
+of targets that are met, and biases. The figures of each scene are kept, so that an interrupted run continues where it ended.
+For comparison the page has the same figures for the noise threshold of Cycles.
 """
 
 import dataclasses
@@ -15,11 +15,11 @@ from tools.harness.terminal import Progress, make_parser
 from . import goals, page, runs, scenes
 
 OUTPUT = BUILD / "accuracy"
-# Of those that exist for Blender too, each with another kind of noise; smaller, since most runs go up to 4096 samples.
+# Scenes that also exist for Blender, each with another kind of noise; smaller, since most runs take up to 4096 samples.
 CYCLES_SCENES = ("balls", "room", "glass_metal", "lights200", "models")
 CYCLES_SIZE = {"width": 48, "height": 32}
 CYCLES_LIMIT = 3600.0
-# Of what is kept of a scene: another number where it gets another field.
+# Version of the kept figures of a scene; it is raised when their fields change.
 _RECORD = 2
 
 

@@ -1,4 +1,4 @@
-"""Renders one scene many times over and compares what each render tells of its error with the error that it has."""
+"""Render one scene many times, and compare the error that each render reports with its actual error."""
 
 import dataclasses
 import hashlib
@@ -19,7 +19,7 @@ from . import figures
 REFERENCE_PARTS = 8
 # Far from the seeds of the runs.
 _REFERENCE_SEED = 1001
-# More samples than any pixel of a run takes: targets end runs, not this.
+# More samples than any pixel of a run takes: runs end at their targets, never at this limit.
 _UNBOUNDED = 1 << 20
 
 
@@ -28,9 +28,9 @@ class Plan:
     seeds: int = 20
     counts: tuple = (64, 256)
     targets: tuple = (0.1, 0.05, 0.02, 0.01)
-    # Samples a pixel that a run may take on average: a target that would take more is scaled up until it does not.
+    # Samples per pixel that a run may take on average: a target that needs more is scaled up.
     budgets: tuple = (32, 96, 160, 256)
-    reference: float = 1.0  # of what the scene asks for
+    reference: float = 1.0  # share of the samples that the scene asks for
     threads: int = 2
 
 
@@ -38,7 +38,7 @@ QUICK = Plan(seeds=6, counts=(64,), targets=(0.05,), budgets=(96,), reference=0.
 
 
 class Measured:
-    """A scene in the library, to be rendered with many settings at once."""
+    """A scene that is uploaded once and rendered with many settings."""
 
     def __init__(self, scene, plan, folder, say):
         self.name, self.plan, self.folder, self.say = scene.name, plan, Path(folder), say
@@ -55,12 +55,12 @@ class Measured:
         return result
 
     def _session(self, seed, **settings):
-        # Samples split as those of a render do.
+        # Paths split as in a render by F12.
         settings = dataclasses.replace(self.snapshot.settings, threads=1, seed=seed, split_lights=0, split_paths=0, **settings)
         return Session(self.uploaded, self.snapshot.camera, settings)
 
     def _each(self, function, seeds, what):
-        """[function(seed)], as many at a time as there are threads: each run has one, which shows in no bit."""
+        """Return [function(seed)]; as many run at a time as there are threads. Each has one thread, which changes no bit."""
         results = []
         with ThreadPoolExecutor(self.plan.threads) as pool:
             for result in pool.map(function, seeds):
@@ -69,13 +69,13 @@ class Measured:
         return results
 
     def _fingerprint(self):
-        """Of the picture's first samples: a reference is good for as long as these are the same."""
+        """Return a digest of the picture's first samples: a reference is valid as long as it is the same."""
         with self._session(_REFERENCE_SEED, samples=16) as session:
             session.render_all()
             return hashlib.sha256(session.read().tobytes()).hexdigest()[:16]
 
     def _reference(self):
-        """Each part is kept in a file of its own: a run that was broken off goes on with the next."""
+        """Return the reference. Each part is kept in a file, so that an interrupted run continues with the next part."""
         key, count = self._fingerprint(), self.samples // REFERENCE_PARTS
 
         def render(number):
@@ -90,7 +90,7 @@ class Measured:
         return Reference(np.stack(self._each(part, range(REFERENCE_PARTS), f"reference of {self.samples} samples")))
 
     def _even(self, reference):
-        """By count of samples, the same for every pixel: bars and intervals. And the errors told at the largest count."""
+        """Return error bars and intervals by number of samples, equal in all pixels, and the errors reported at the last."""
 
         def run(seed):
             results, first = [], 0
@@ -113,7 +113,7 @@ class Measured:
         result = []
         count = self.plan.counts[-1]
         for asked, budget in zip(self.plan.targets, self.plan.budgets, strict=True):
-            # The interval narrows with the root of samples, what cannot be excluded with the samples themselves.
+            # The interval narrows with the square root of the samples, the part that cannot be excluded with the samples.
             more = budget / count
             least = max(e.high / math.sqrt(more) + e.cannot_exclude / more for e in told)
             target = max(asked, float(f"{least:.2g}"))
@@ -135,7 +135,7 @@ class Measured:
         pictures = np.stack([run[0] for run in runs])
         real = [reference.distance(picture) for picture in pictures]
         samples = float(np.mean([run[1] for run in runs]))
-        # What the same number of samples would have done, spread evenly.
+        # The error of the same number of samples, spread evenly.
         spent = max(1, round(samples))
 
         def even(seed):
@@ -152,7 +152,7 @@ class Measured:
             "real": real,
             "samples": samples,
             "even_error": evenly,
-            # Of even sampling, to be as good as these runs: over what they took.
+            # Samples that even sampling needs for the error of these runs, over the samples that they took.
             "even_samples_ratio": (evenly / own) ** 2 if own > 0.0 else 1.0,
             "reference_share": (reference.error / own) ** 2 if own > 0.0 else 0.0,
             "bias": figures.bias(pictures, reference),

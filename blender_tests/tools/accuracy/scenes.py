@@ -1,4 +1,4 @@
-"""Twenty small pictures of all kinds, on which it is tested whether a told error is true."""
+"""Twenty small scenes of all kinds, on which error estimates are tested."""
 
 import dataclasses
 import math
@@ -22,9 +22,9 @@ GLASS = Material("glass", lobes=(Lobe(LobeKind.DIELECTRIC, color=(1, 1, 1), ior=
 @dataclasses.dataclass(frozen=True)
 class Scene:
     name: str
-    build: object  # a snapshot in return
+    build: object  # a function that returns a snapshot
     reference: int  # samples of the reference
-    in_blender: bool = False  # it is one of scenes/, so Cycles can render it too
+    in_blender: bool = False  # the scene is in scenes/, so Cycles can render it, too
 
 
 def _scene(instances, materials, lights=(), eye=(0, -6, 2.5), target=(0, 0, 0.7), meshes=(), world=0.0, lens=0.0, **settings):
@@ -42,7 +42,7 @@ def _scene(instances, materials, lights=(), eye=(0, -6, 2.5), target=(0, 0, 0.7)
 
 
 def _balls(*materials):
-    """On a floor: a ball of each material, side by side."""
+    """Return a ball of each material, side by side on a floor."""
     count = len(materials)
     balls = [sphere(i + 1, move(2.2 * (i - (count - 1) / 2), 0, 0.9) @ scale(0.9)) for i in range(count)]
     return [plane(0), *balls], [lambert((0.6, 0.6, 0.55)), *materials]
@@ -66,7 +66,7 @@ def depth_of_field():
 
 
 def environment():
-    """Under a pictured sky with a sun of two texels, a thousand times as bright as it."""
+    """An image as sky, with a sun of two texels that is a thousand times as bright."""
     texels = np.full((32, 64, 3), 0.3, np.float32)
     texels[16:] = np.linspace((0.5, 0.6, 0.9), (0.15, 0.3, 0.8), 16)[:, None]
     texels[24, 20:22] = 300.0
@@ -78,7 +78,7 @@ def environment():
 
 
 def tiny_lamp():
-    """A bright ball of a thousandth's area, of glowing faces and not a lamp, and a point lamp behind a screen."""
+    """A bright emissive ball that covers a thousandth of the picture, and a point lamp behind a screen."""
     instances, materials = _balls(lambert(0.7), beckmann(0.7, 0.3))
     instances += [
         sphere(3, move(0.5, -1.0, 3.0) @ scale(0.05)),
@@ -89,7 +89,7 @@ def tiny_lamp():
 
 
 def half_black():
-    """Nothing in one half of the picture, a lit ball before nothing in the other."""
+    """An empty half of the picture, and a lit ball before black in the other."""
     instances = [sphere(0, move(1.6, 0, 0.7) @ scale(1.0))]
     return _scene(instances, [lambert(0.7)], [_area(5.0, (3, -3, 4), (2, 2), 0.4)])
 
@@ -100,13 +100,13 @@ def classic():
 
 
 def very_dark():
-    """Light of a millionth, and what a mirror ball throws of it."""
+    """Light of a millionth of the usual power, and its caustics from a mirror ball."""
     dark = 1e-6
     return _scene(*_balls(MIRROR, beckmann(0.6, 0.5)), [_area(3.0 * dark)], world=(0.01 * dark,) * 3)
 
 
 def high_contrast():
-    """A corner in full light beside one lit through a slit."""
+    """A corner in full light beside a corner lit through a slit."""
     walls = [
         plane(0),
         Instance(mesh=0, matrix=move(0, 1.5, 1.5) @ rotate_x(math.pi / 2), materials=(0,)),
@@ -133,7 +133,7 @@ def glossy():
 
 
 def veils():
-    """Ten see-through cards one behind another, under a lamp and the sky."""
+    """Ten transparent cards, one behind another, under a lamp and the sky."""
     instances = [plane(0)]
     for i in range(10):
         instances.append(Instance(mesh=0, matrix=move(0.35 * (i - 5), 0.3 * i, 1.0) @ rotate_x(1.5), materials=(1,)))
@@ -143,7 +143,7 @@ def veils():
 
 
 def glow():
-    """A room lit by glowing balls alone, of which none is a lamp."""
+    """A room lit by emissive balls alone."""
     instances, materials = _balls(lambert(0.7), beckmann(0.8, 0.3))
     for x, y, z, radius in ((0, -1, 2.5, 0.3), (-2.6, 0.5, 0.3, 0.3), (2.6, 1, 2.2, 0.6)):
         instances.append(sphere(3, move(x, y, z) @ scale(radius)))
@@ -152,7 +152,7 @@ def glow():
 
 
 def at_size(snapshot, width=WIDTH, height=HEIGHT):
-    """The same view from left to right, with as many pixels."""
+    """Return the snapshot with another size of picture, and the same view from left to right."""
     camera = snapshot.camera
     left, right, bottom, top = camera.window
     wide, middle = right - left, 0.5 * (bottom + top)
@@ -163,7 +163,7 @@ def at_size(snapshot, width=WIDTH, height=HEIGHT):
 
 
 def from_blender(name):
-    """The scene of that name in scenes/, as the add-on exports it."""
+    """Return a function that exports the scene of that name in scenes/."""
 
     def build():
         path = BUILD / "accuracy" / "scenes" / f"{name}.npz"
@@ -184,10 +184,10 @@ SCENES = (
     *(from_blender(name) for name in ("balls", "room", "glass_metal", "leaves", "lights200", "models", "triangle")),
 )
 
-# What a short run looks at.
+# The scenes of a short run.
 _QUICK = "half_black,glossy,room"
 
 
 def chosen(only="", quick=False):
-    """Those whose names match one of the comma-separated patterns."""
+    """Return the scenes whose names match one of the comma-separated patterns."""
     return [scene for scene in SCENES if wanted(only or (_QUICK if quick else ""), scene.name)]

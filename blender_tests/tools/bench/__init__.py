@@ -1,1 +1,1 @@
-"""`make bench`: every renderer side by side on this machine. Nothing here is asserted: tests judge pictures, not clocks."""
+"""`make bench`: every renderer side by side on this machine. Nothing is asserted: tests compare pictures, not times."""

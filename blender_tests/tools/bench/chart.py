@@ -12,7 +12,7 @@ _COLORS = {
 
 
 def write(figures, folder):
-    """Two rows of bars, samples/s and efficiency, a group for each scene; gives the files' names."""
+    """Draw two rows of bars, samples/s and efficiency, with a group for each scene. Return the files' names."""
     import matplotlib
 
     matplotlib.use("Agg")

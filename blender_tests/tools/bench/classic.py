@@ -1,4 +1,4 @@
-"""CLASSIC beside POV-Ray: 600 exact spheres, the same rays, by turns."""
+"""Compare CLASSIC with POV-Ray: 600 exact spheres, the same rays, by turns."""
 
 from pathlib import Path
 
@@ -11,13 +11,13 @@ from . import jobs
 
 SAMPLES = 16
 _BOUNCES = 10
-# Highlights are another formula there, and light fades by 1 / (1 + d^2): little of the picture, by little.
+# POV-Ray has another formula for highlights, and light fades by 1 / (1 + d^2): small differences in a small part.
 _TOLERANCE = 0.02
 _BRIGHTEST = 1.0
 
 
 def trace(snapshot, threads, picture):
-    """POV-Ray on a snapshot, in a process of its own."""
+    """Render a snapshot with POV-Ray, in its own process."""
     from addon.bindings.snapshot import SceneSnapshot
 
     from .peers import povray
@@ -31,7 +31,7 @@ def trace(snapshot, threads, picture):
 
 
 def measure(rounds, threads, quick):
-    """Rays/s of both, shadow tests counted, and how alike their pictures are."""
+    """Return the rays/s of both, shadow rays included, and the difference of their pictures."""
     width, height = (160, 120) if quick else (640, 480)
     common = {"name": "spheres600", "threads": threads, "width": width, "height": height, "bounces": _BOUNCES}
     snapshot = str(jobs.OUTPUT / "scenes" / "spheres600.npz")

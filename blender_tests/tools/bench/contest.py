@@ -1,4 +1,4 @@
-"""One scene, all renderers: the pictures compared, then timed by turns."""
+"""One scene, all renderers: compare the pictures, then time the renderers by turns."""
 
 import hashlib
 
@@ -11,19 +11,19 @@ from tools.harness.workers import Failed
 
 from . import jobs, plan
 
-# Of the two halves of references: far from the seeds of the rounds.
+# Seeds of the two halves of references: far from the seeds of the rounds.
 _REFERENCE_SEEDS = (1001, 1002)
 
 
 def digest_of_scene(path):
-    """Of the arrays in a snapshot's file, whatever their packing. Rows of three numbers (positions, normals, corners) count by
-    their sums: threads of Blender build a mesh's faces, and add up its normals, in any order."""
+    """Return a digest of the arrays in a snapshot's file, independent of compression. Only the sums of rows of three numbers
+    (positions, normals, corners) count: Blender's threads build a mesh's faces, and sum its normals, in any order."""
     result = hashlib.sha256()
     with np.load(path) as arrays:
         for name in sorted(arrays.files):
             array = arrays[name]
             if array.ndim == 2 and array.shape[1] == 3:
-                # Normals differ in last bits, by 1e-6 in their sum; adding zero leaves no negative one.
+                # Normals differ in their last bits, by 1e-6 in their sum; adding zero turns -0 into 0.
                 array = np.array([*array.shape, *(np.round(array.sum(axis=0, dtype=float), 2) + 0.0)])
             result.update(name.encode())
             result.update(np.ascontiguousarray(array).tobytes())
@@ -31,14 +31,14 @@ def digest_of_scene(path):
 
 
 class Contest:
-    """What all scenes share: who takes part, in which version, on how many threads."""
+    """The measurement of scenes: the renderers, their versions, and the number of threads."""
 
     def __init__(self, versions, missing, threads, limit, say):
         self.versions, self.missing, self.threads, self.limit, self.say = versions, missing, threads, limit, say
         self.snapshots = {}
 
     def measure(self, scene):
-        """All figures of one scene, as they go into the JSON."""
+        """Return all figures of one scene, for the JSON."""
         result = {"title": scene.title, "size": [scene.width, scene.height], "samples": scene.samples, "renderers": {}}
         result["reference_samples"], result["lifelike"] = scene.reference, scene.lifelike
         snapshot = str(jobs.OUTPUT / "scenes" / f"{scene.name}-{scene.width}.npz")
@@ -69,7 +69,7 @@ class Contest:
         return {**settings, "samples": scene.samples}
 
     def _able(self, scene, snapshot):
-        """Each renderer of the scene, with the reason why it cannot render it, or None."""
+        """Yield each renderer of the scene, with the reason why it cannot render the scene, or None."""
         chosen = [plan.BY_KEY[key] for key in scene.renderers]
         modules = sorted({renderer.module for renderer in chosen if renderer.module and renderer.key not in self.missing})
         reasons = jobs.with_peer("check", modules=modules, snapshot=snapshot) if modules else {}
@@ -92,7 +92,7 @@ class Contest:
         )
 
     def _references(self, scene, snapshot, able, records):
-        """By key: (reference, variance) of those that have one."""
+        """Return {key of a renderer: (reference, variance)}."""
         found = {}
         if not scene.reference:
             return found
@@ -109,7 +109,7 @@ class Contest:
         return found
 
     def _reference(self, scene, snapshot, renderer):
-        """A renderer's own converged picture, for its own errors, and the variance of its pixels."""
+        """Return a renderer's own converged picture, from which its errors are measured, and the variance of its pixels."""
         key = f"{self.versions[renderer.key]} {digest_of_scene(snapshot)} {scene.reference}"
         name = f"{scene.name}-{renderer.key}-{hashlib.sha256(key.encode()).hexdigest()[:16]}"
         halves = []
@@ -123,10 +123,10 @@ class Contest:
         return estimates.join_halves(*halves)
 
     def _compare(self, scene, shown, records):
-        """Everyone's picture with ours; another one is marked, and counts nowhere."""
+        """Compare each picture with ours; a renderer whose picture differs is marked and left out of all ratios."""
         if "lancer" not in shown:
             return
-        # The brightest hundredth is white, in all of them alike.
+        # The brightest hundredth of our picture is white in all of them.
         white = float(np.percentile(shown["lancer"], 99)) or 1.0
         for key, picture in shown.items():
             path = jobs.OUTPUT / "pictures" / f"{scene.name}-{key}.png"
@@ -138,7 +138,7 @@ class Contest:
             records[key]["difference"] = {**figures, "tolerance": tolerance, "same": pictures.is_same(figures, tolerance)}
 
     def _rounds(self, scene, able, records):
-        """Everyone once a round, with the round's seed; gives the mean picture of each."""
+        """Run each renderer once per round, with the round's seed. Return the mean picture of each."""
         by_turns(scene.rounds, able, lambda renderer, number: self._round(scene, renderer, number, records[renderer.key]))
         rendered = {key: record.get("pictures", []) for key, record in records.items()}
         return {key: sum(found) / scene.rounds for key, found in rendered.items() if found}
@@ -160,7 +160,7 @@ class Contest:
         self.say(f"{scene.name}: {renderer.title} {figures['samples_per_second'] / 1e6:.3f} million samples/s")
 
     def _conclude(self, renderer, found, record):
-        """Medians over the rounds, and what the pictures say of the error."""
+        """Store the medians over the rounds, and the error of the pictures."""
         rounds, rendered = record.get("rounds", []), record.pop("pictures", [])
         if not rounds:
             return

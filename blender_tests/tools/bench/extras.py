@@ -1,4 +1,4 @@
-"""What is measured beside the scenes: first looks, preparation, threads, accelerators, another revision."""
+"""Measurements besides the scenes: first samples, preparation, threads, accelerators, another revision."""
 
 from tools.harness.places import ROOT
 from tools.harness.turns import by_turns, middle, middles, ratio
@@ -7,7 +7,7 @@ from . import jobs
 
 
 def first_look(rounds, name, **settings):
-    """The same scene through F12 in both engines, by turns: 320 x 180, one sample."""
+    """Render the same scene by F12 in both engines, by turns: 320 x 180, one sample."""
     size = {"width": 320, "height": 180, "samples": 1}
 
     def render(engine, _):
@@ -26,7 +26,7 @@ def prepare(rounds, name, threads):
 
 
 def threads_scaling(rounds, quick):
-    """The rate on two threads over that on one, by turns."""
+    """Return the rate on two threads over that on one, measured by turns."""
     size = {"width": 128, "height": 96, "samples": 32} if quick else {"width": 256, "height": 192, "samples": 64}
     settings = {"engine": "LANCER", "name": "balls", **size, "first_look": False}
 
@@ -50,7 +50,7 @@ def accelerators(rounds, threads):
 
 
 def before(rounds, threads, tree, say):
-    """F12 of this tree and of another revision's, by turns."""
+    """Return the times of F12 of this tree and of another revision's, measured by turns."""
     result, trees = {}, {"before": tree, "now": ROOT}
     for name, samples in (("balls", 16), ("default_cube", 32), ("cornell", 16), ("spheres600", 16)):
         settings = {"engine": "LANCER", "name": name, "threads": threads, "samples": samples}

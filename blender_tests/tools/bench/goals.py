@@ -1,4 +1,4 @@
-"""The speed goals, each with what this run measured, from the figures of bench.json alone."""
+"""The speed goals, each with its measurement in this run, from the figures of bench.json alone."""
 
 from dataclasses import replace
 
@@ -7,7 +7,7 @@ from tools.harness.verdicts import NOT_MEASURED, Verdict
 
 
 def judge(figures):
-    """A Verdict for each row of the table."""
+    """Return a Verdict for each row of the table."""
     return [row(figures) for row in _ROWS]
 
 
@@ -17,7 +17,7 @@ def judge_against_others(figures):
 
 
 def shown(figures, key, lifelike=False):
-    """(scene, our record, theirs) where both were timed on the same picture."""
+    """Yield (scene, our record, theirs) of scenes where both were timed and show the same picture."""
     for name, scene in figures.get("scenes", {}).items():
         if scene.get("lifelike", False) != lifelike:
             continue
@@ -44,7 +44,7 @@ def efficiency_ratios(figures, key, lifelike=False):
 
 
 def get(figures, *keys):
-    """figures[key][key] ..., or None where one is missing; the median of what has one."""
+    """Return figures[key][key] ..., or its median if it has one; None if a key is missing."""
     for key in keys:
         if not isinstance(figures, dict) or key not in figures:
             return None
@@ -71,7 +71,7 @@ def _verdict(what, goal, value, text, reached):
 
 
 def _ratios(what, goal, ratios, mean_limit, least_limit):
-    """Geometric mean and the scene where it is least; either limit may be None."""
+    """Judge the geometric mean and the smallest ratio; either limit may be None."""
     if not ratios:
         return Verdict(what, goal, NOT_MEASURED, None)
     mean, worst = estimates.geometric_mean(ratios.values()), min(ratios, key=ratios.get)
@@ -81,7 +81,7 @@ def _ratios(what, goal, ratios, mean_limit, least_limit):
 
 
 def _all(what, goal, parts):
-    """Several figures that all have to hold: (text, value, reached)."""
+    """Return a Verdict of several figures that must all reach their goals: (text, value, reached)."""
     texts = [f"{name} {NOT_MEASURED}" if value is None else f"{name} {text}" for name, value, text, _ in parts]
     if all(value is None for _, value, _, _ in parts):
         return Verdict(what, goal, NOT_MEASURED, None)
@@ -207,7 +207,7 @@ def _view(figures):
 
 
 def _leaks(figures):
-    """A leak is a leak among any number of rays; none says enough only of as many as the goal names."""
+    """A leak misses the goal with any number of rays; no leak reaches it only with as many rays as the goal names."""
     count, rays = get(figures, "rays", "leaks"), get(figures, "rays", "leak_rays") or 0
     verdict = at_most("watertight: rays aimed at edges and vertices that leak", "0 in 1e8", count, 0, f"{{}} in {rays:.3g}")
     return replace(verdict, reached=None) if verdict.reached and rays < 1e8 else verdict

@@ -1,4 +1,4 @@
-"""The benchmark's own measuring processes: inside Blender's module, and with another renderer."""
+"""The benchmark's measuring processes: inside Blender's module, and with another renderer."""
 
 import json
 import sys
@@ -8,12 +8,12 @@ from tools.harness import workers
 from tools.harness.places import BUILD, ROOT
 
 OUTPUT = BUILD / "bench"
-# Where other revisions have their worker.
+# Places of the worker in other revisions.
 _EARLIER = ("tools/bench/worker.py", "bench/worker.py", "bench_worker.py")
 
 
 def in_blender(task, root=ROOT, **arguments):
-    """root: the tree that is measured; one of another revision has its own worker."""
+    """Run a task of the worker. root: the tree that is measured; another revision has its own worker."""
     tests = root / "blender_tests"
     start = tests / "tools" / "start.py"
     if start.exists():
@@ -32,6 +32,6 @@ def with_peer(task, module=None, limit=None, **arguments):
 def _environment(module):
     if module != "luxcore":
         return {}
-    # LuxCore's own allocator must be there before any other library has allocated, or it aborts.
+    # LuxCore's allocator must be loaded before any other library allocates, or LuxCore aborts.
     found = sorted(Path(sys.prefix).glob("lib/python*/site-packages/pyluxcore.libs/libtbbmalloc_proxy*"))
     return {"LD_PRELOAD": str(found[0])} if found else {}

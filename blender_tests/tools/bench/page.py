@@ -1,4 +1,4 @@
-"""What a run of the benchmark leaves: bench.json, index.html, and the tables of README files."""
+"""The output of the benchmark: bench.json, index.html, and the tables of README files."""
 
 from tools.harness import page, verdicts
 from tools.harness.page import element, lines
@@ -7,9 +7,9 @@ from tools.harness.places import README, TABLES
 from . import goals
 
 _STYLE = "img.picture { width: 192px }"
-# What is measured beside scenes and rays.
+# Measurements besides scenes and rays.
 _REST = ("first_look", "first_shown", "million", "instances", "build", "threads_scaling", "classic", "accelerators", "before")
-# Of the table for users.
+# The renderers of the table for users.
 _USERS = ("lancer", "cycles")
 
 
@@ -36,7 +36,7 @@ def _heading(text):
 
 
 def describe(figures):
-    """Machine, threads, versions, and who is missing, in one paragraph."""
+    """Return machine, threads, versions, and missing renderers, in one paragraph."""
     machine = figures["machine"]
     text = f"{machine['processor']}, {machine['processors']} processors, {machine['memory_gib']} GiB, {machine['system']}; "
     text += f"{figures['threads']} threads; " + ("a short run; " if figures["quick"] else "")
@@ -108,7 +108,7 @@ def _rays(rays):
 
 
 def _rest(figures):
-    """A line for each figure that has a median."""
+    """Return a table with a row for each figure that has a median."""
     rows = []
 
     def walk(name, value):
@@ -126,7 +126,7 @@ def _rest(figures):
 
 
 def _roofline(figures):
-    """What the machine can do, and how near the library's rays come to it where their nodes and leaves are counted."""
+    """Yield the machine's limits, and the share of them that the library's rays reach if nodes and leaves are counted."""
     limits, rows = figures.get("limits", {}), figures.get("roofline", [])
     if "clock" not in limits:
         yield verdicts.NOT_MEASURED
@@ -146,7 +146,7 @@ def _roofline(figures):
 
 
 def update_tables(figures, tables=TABLES, readme=README):
-    """Ratios to other renderers for developers, samples/s beside Cycles for users."""
+    """Update the tables: ratios to other renderers for developers, samples/s of Lancer and Cycles for users."""
     text = f"{describe(figures)} Commit {figures['commit']}."
     rows = [verdicts.plain_row(verdict.as_dict()) for verdict in goals.judge_against_others(figures)]
     page.put_between(tables, "bench", [text, page.markdown(verdicts.HEAD, rows)])
@@ -155,7 +155,7 @@ def update_tables(figures, tables=TABLES, readme=README):
 
 
 def _rates(figures):
-    """The scenes on which both renderers of the table for users were timed."""
+    """Return rows of the scenes on which both renderers of the table for users were timed."""
     titles = [f"{figures['renderers'][key]['title']} {figures['renderers'][key]['version']}" for key in _USERS]
     rows = []
     for scene in figures["scenes"].values():

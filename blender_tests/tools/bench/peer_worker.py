@@ -20,7 +20,7 @@ def version(module, option=None):
 
 
 def check(modules, snapshot):
-    """By module: why it cannot render this snapshot, or None."""
+    """Return {module: the reason why it cannot render this snapshot, or None}."""
     loaded, result = SceneSnapshot.load(snapshot), {}
     for module in modules:
         try:
@@ -32,11 +32,11 @@ def check(modules, snapshot):
 
 
 def render(module, snapshot, threads, samples, seed, option=None, picture=None, first_look=True):
-    """Loads the scene, renders one sample, then all of them with another seed."""
+    """Load the scene, render one sample, then all of them with another seed."""
     adapter, loaded = _adapter(module), SceneSnapshot.load(snapshot)
     pixels = loaded.camera.width * loaded.camera.height
     result = {"samples": samples * pixels}
-    # Import before the clock starts, as Blender is up before F12.
+    # Import before the clock starts, as Blender is running before F12.
     adapter.version(option) if option else adapter.version()
     workers.reset_peak()
     before, started = workers.memory("VmRSS"), time.perf_counter()

@@ -1,4 +1,4 @@
-"""What is measured: renderers, scenes, sizes, samples, rounds."""
+"""The plan of the benchmark: renderers, scenes, sizes, samples, rounds."""
 
 from dataclasses import dataclass, replace
 
@@ -10,17 +10,17 @@ class Renderer:
     key: str
     title: str
     tolerance: float  # of the median of block differences, as a share of the picture's level
-    engine: str = ""  # of Blender, or
+    engine: str = ""  # an engine of Blender, or
     module: str = ""  # an adapter of bench.peers
     option: str | None = None
-    same_picture_as: str = ""  # another key, whose converged picture is this one's too
+    same_picture_as: str = ""  # key of a renderer that converges to the same picture
 
 
-# Cycles computes the same light by the same models, so that only noise should differ: a twentieth is what blocks of 64
-# pixels at 32 samples show of it in the noisiest scene. Principled, between diffuse and metal, is another model elsewhere.
-# Mitsuba's gives back 1 to 5 % more light of a lamp or a sky (measured on one grey triangle), and as much again where light
-# meets several surfaces. LuxCore's Disney material gives back 9 to 17 % less, a third where light meets several surfaces: the
-# same work at another brightness.
+# Cycles has the same materials and lights, so that pictures should differ by noise alone: up to a twentieth in blocks of 64
+# pixels at 32 samples of the noisiest scene. Other renderers have another Principled model between diffuse and metal.
+# Mitsuba's reflects 1 to 5 % more light of a lamp or a sky (measured on one grey triangle), and as much again over several
+# bounces. LuxCore's Disney material reflects 9 to 17 % less, a third less over several bounces: the same work at another
+# brightness.
 RENDERERS = (
     Renderer("lancer", "Lancer", 0.0, engine="LANCER"),
     Renderer("cycles", "Cycles", 0.05, engine="CYCLES"),
@@ -35,7 +35,7 @@ BY_KEY = {renderer.key: renderer for renderer in RENDERERS}
 
 @dataclass(frozen=True)
 class Scene:
-    """rounds: of one seed each; reference: samples a pixel of the converged picture, 0 = no errors are measured."""
+    """rounds: one seed each; reference: samples per pixel of the converged picture, 0 = no errors are measured."""
 
     name: str
     title: str
@@ -45,8 +45,8 @@ class Scene:
     rounds: int = 5
     reference: int = 1024
     renderers: tuple = tuple(renderer.key for renderer in RENDERERS)
-    exact: bool = False  # Cycles would trace the meshes that stand in for exact shapes
-    lifelike: bool = False  # as files of artists are; judged by itself
+    exact: bool = False  # it has exact shapes, in place of which Cycles would trace meshes
+    lifelike: bool = False  # it resembles artists' files; such scenes have goals of their own
 
 
 def _lifelike(name, title):
@@ -66,16 +66,16 @@ SCENES = (
     Scene("coated", "60 balls: brushed, with sheen, with tinted coat", renderers=("lancer", "cycles")),
     Scene("leaves", "a tree of cut-out leaves"),
     Scene("triangle", "one triangle", samples=256, reference=2048),
-    # As files of artists are: images in every slot, passes ticked, large lamps, much geometry.
+    # Like artists' files: images in every slot, passes, large lamps, much geometry.
     _lifelike("daylight", "a million triangles lit through windows, with passes"),
     _lifelike("product", "a product between softboxes, with passes"),
     _lifelike("foliage", "a wood of cut-out leaves, with passes"),
-    # What lamps cost, measured against each other: no part of the comparison, whose mean the many would carry alone.
+    # The cost of lamps, compared with each other and left out of the means, which 10 000 lamps would dominate.
     Scene("lights2", "two lamps", rounds=3, reference=0, renderers=("lancer",)),
     Scene("lights10k", "10 000 lamps", samples=4, rounds=3, reference=0, renderers=("lancer",)),
 )
 
-# Where a short run measures errors, and beside whom.
+# The scenes and renderers of which a short run measures errors.
 _QUICK_ERRORS = ("balls", "room")
 _QUICK_RENDERERS = ("lancer", "cycles", "mitsuba_llvm")
 
@@ -89,5 +89,5 @@ def _quick(scene):
 
 
 def scenes(only="", quick=False):
-    """The scenes whose names match one of the comma-separated patterns; all without any."""
+    """Return the scenes whose names match one of the comma-separated patterns, or all if there are no patterns."""
     return [_quick(scene) if quick else scene for scene in SCENES if wanted(only, scene.name)]

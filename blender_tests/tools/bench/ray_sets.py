@@ -1,7 +1,7 @@
-"""start.py bench.ray_sets write JSON: the file of triangles and rays that the drivers in rays/ read; the answer is JSON.
+"""start.py bench.ray_sets write JSON: write the file of triangles and rays that the drivers in rays/ read; the answer is JSON.
 
-The rays are those of a path tracer on a snapshot: primary ones in small squares of pixels, two diffuse bounces in the order in
-which their pixels come, and shadow rays towards the first lamp that has a place.
+The rays are those of a path tracer on a snapshot: primary rays in small squares of pixels, two diffuse bounces in the order of
+their pixels, and shadow rays towards the first lamp that is not a sun.
 """
 
 import numpy as np
@@ -13,14 +13,14 @@ from tools.bench.peers.geometry import placements
 from tools.bench.peers.view import read_view
 from tools.harness import workers
 
-# Squares of this many pixels a side are neighbours in the file, so that packets of 4, 8 and 16 are coherent.
+# The pixels of squares with this side are neighbours in the file, so that packets of 4, 8 and 16 are coherent.
 _SQUARE = 4
-# Rays leave surfaces this share of the scene's size away from them, since not all drivers can name where a ray starts.
+# Rays start at this share of the scene's size above surfaces, since not all drivers support an interval of t.
 _LIFT = 1e-5
 
 
 def merged(snapshot):
-    """All triangles in the world: (positions, triangles)."""
+    """Return all triangles in world space: (positions, triangles)."""
     positions, triangles, first = [], [], 0
     for placed in placements(snapshot):
         for matrix in placed.matrices:
@@ -32,7 +32,7 @@ def merged(snapshot):
 
 
 def primary(view, count, random):
-    """Origins and directions of count rays through random points of pixels, in squares, row by row of squares."""
+    """Return origins and directions of count rays through random points of pixels, row by row of squares of pixels."""
     height = int(np.sqrt(count * view.height / view.width)) // _SQUARE * _SQUARE
     width = count // height // _SQUARE * _SQUARE
     y, x = np.mgrid[0:height, 0:width]
@@ -44,7 +44,7 @@ def primary(view, count, random):
 
 
 def bounce(hits, directions, random, lift):
-    """Cosine-distributed directions about the side of each hit that was seen."""
+    """Return origins, cosine-distributed directions and normals on the visible side of each hit."""
     normals = hits["geometric_normal"].astype(float)
     normals *= -np.sign(np.sum(normals * directions, axis=1, keepdims=True))
     ball = random.normal(size=normals.shape)
@@ -91,7 +91,7 @@ def _sets(snapshot, positions, triangles, count, random):
 
 
 def _towards(lamp, origins, normals, random):
-    """Rays to points of the lamp that lie above the surface; they end just before it."""
+    """Return rays to points of the lamp above the horizon of the surface; they end just before the lamp."""
     spot = random.random((len(origins), 2)) - 0.5
     size = lamp.size if lamp.kind == LightKind.AREA else (lamp.radius, lamp.radius)
     targets = lamp.matrix[:, 3] + spot @ (lamp.matrix[:, :2] * size).T

@@ -1,4 +1,4 @@
-"""Bare rays: Embree's and ours on the same triangles and rays, the time that each takes to build, and their bound."""
+"""Rays alone: Embree's and our rates on the same triangles and rays, build times, and the machine's bound."""
 
 import sys
 from pathlib import Path
@@ -12,9 +12,8 @@ from . import jobs
 _SOURCES = TOOLS / "bench" / "rays"
 _PASSES = 3
 _KINDS = ("primary", "diffuse", "shadow")
-# What a ray asks of the processor: a step through a node of eight boxes keeps the two floating-point ports busy for some 11
-# cycles, a block of four triangles for 22, so that nodes and blocks a ray bound the rays a second of a core by its clock alone;
-# caches only take from it.
+# A step through a node of eight boxes keeps the two floating-point ports busy for some 11 cycles, a block of four triangles for
+# 22. The clock and the nodes and blocks per ray thus bound the rays per second of a core; cache misses lower them further.
 NODE_CYCLES, LEAF_CYCLES = 11.0, 22.0
 
 
@@ -26,7 +25,7 @@ def find_embree():
 
 
 def build_drivers():
-    """(our driver, Embree's), compiled with the system's compiler."""
+    """Return (our driver, Embree's), compiled with the system's compiler."""
     ours = BUILD / "core"
     workers.build("cmake", "-S", "core", "-B", ours, "-G", "Ninja", "-DLANCER_BENCH=ON")
     workers.build("cmake", "--build", ours, "--target", "lancer_rays")
@@ -41,7 +40,7 @@ def write_work(name, snapshot, count, seed=1):
 
 
 def measure(snapshot, count, rounds, threads, leak_rays):
-    """Rates of every kind and mode, by turns; Embree's part says why where it is missing."""
+    """Return the rates of every kind of rays and mode, measured by turns. If Embree is missing, its part has the reason."""
     work, told = write_work("rays", snapshot, count)
     ours, theirs = build_drivers()
     result = {"triangles": told["triangles"], "rays": told["rays"]}
@@ -58,7 +57,7 @@ def measure(snapshot, count, rounds, threads, leak_rays):
     mine, embree = answers["lancer"], answers.get("embree")
     result["lancer"] = {kind: middle(answer[kind]["rate"] for answer in mine) for kind in _KINDS}
     result["lancer"]["instruction_set"] = mine[0]["instruction_set"]
-    # What a ray asks of the tree, where the driver counts it.
+    # Nodes and leaves per ray, if the driver counts them.
     counted = {kind: {name: mine[0][kind][name] for name in ("nodes", "leaves")} for kind in _KINDS if "nodes" in mine[0][kind]}
     result["counts"] = counted
     result["hits"] = {kind: mine[0][kind]["hits"] for kind in _KINDS}
@@ -66,7 +65,7 @@ def measure(snapshot, count, rounds, threads, leak_rays):
         result["embree"] = {quality: _embree(embree, quality) for quality in ("fast", "robust")}
         result["embree"]["version"] = embree[0]["version"]
         result["agreement"] = {kind: _agreement(mine[0], embree[0], kind, told) for kind in _KINDS}
-    # On one thread too, once: what several threads share shows in the difference.
+    # Once on one thread, too: the difference shows the cost of shared caches and memory.
     result["one_thread"] = {name: trace(name, 0, threads=1) for name in drivers}
     result.update(_leaks(ours, threads, leak_rays))
     return result
@@ -78,12 +77,12 @@ def _embree(answers, quality):
 
 
 def _agreement(ours, theirs, kind, told):
-    """Share of the rays about which the two differ at least: both are asked whether there is a hit."""
+    """Return the difference of the two numbers of hits as a share of the rays."""
     return abs(ours[kind]["hits"] - theirs["robust"][kind]["hits"]) / told["rays"][kind]
 
 
 def _leaks(driver, threads, count):
-    """Rays from within a closed, bumpy ball at its vertices and edges."""
+    """Trace rays from inside a closed, bumpy ball to its vertices and edges."""
     import numpy as np
     from trimesh import creation
 
@@ -99,7 +98,7 @@ def _leaks(driver, threads, count):
 
 
 def build_times(snapshot, rounds, threads):
-    """Seconds that both take to build over the triangles of a snapshot, by turns."""
+    """Return the build times in seconds of both over the triangles of a snapshot, measured by turns."""
     work, told = write_work("build", snapshot, 0)
     ours, theirs = build_drivers()
     drivers = {"lancer": [ours], "embree": [theirs, find_embree()]}
@@ -112,21 +111,21 @@ def build_times(snapshot, rounds, threads):
 
 
 def limits(threads):
-    """Clock, latencies and bandwidths of this machine."""
+    """Return the clock, latencies and bandwidths of this machine."""
     program = jobs.OUTPUT / "machine_limits"
     source = TOOLS / "bench" / "rays" / "machine.cpp"
-    # It runs here and now, and is to show what this very processor can do.
+    # The program is compiled for this very processor.
     workers.build("c++", "-O3", "-std=c++20", "-march=native", "-pthread", source, "-o", program)
     return workers.run([program, threads])
 
 
 def bound(nodes, leaves, clock, threads):
-    """Rays a second that so many nodes and leaves a ray allow."""
+    """Return the rays per second that these nodes and leaves per ray allow."""
     return threads * clock / (nodes * NODE_CYCLES + leaves * LEAF_CYCLES)
 
 
 def roofline(machine, rays, threads):
-    """A row for each kind of ray whose nodes and leaves the library has counted; none where it counts nothing."""
+    """Return a row for each kind of ray whose nodes and leaves the library has counted; [] if it counts none."""
     result = []
     for kind, counts in rays.get("counts", {}).items():
         roof = bound(counts["nodes"], counts["leaves"], machine["clock"], threads)

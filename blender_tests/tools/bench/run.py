@@ -1,6 +1,6 @@
 """`make bench`: speed and error of every renderer on this machine, side by side in one run: build/bench/index.html.
 
-Every measurement runs in a process of its own, and competitors take turns, so that a slow minute of the machine falls on all.
+Every measurement runs in its own process, and the competitors take turns, so that a slow minute of the machine affects all.
 Figures are medians over the rounds.
 """
 
@@ -27,7 +27,7 @@ def read_arguments():
 
 
 def find_renderers(say):
-    """(versions, missing): by key, the version of those that run, and why others do not."""
+    """Return ({key: version} of the renderers that run, {key: reason} of the others)."""
     own = jobs.in_blender("versions")
     versions = {"lancer": f"{own['lancer']} ({digest_of_library()[:8]})", "cycles": own["blender"]}
     missing = {}
@@ -42,7 +42,7 @@ def find_renderers(say):
 
 
 def attempt(figures, key, say, measure, *arguments, **settings):
-    """figures[key] = measure(...), or why it could not be measured."""
+    """Set figures[key] to measure(...), or to the reason why it could not be measured."""
     try:
         figures[key] = measure(*arguments, **settings)
     except Failed as reason:

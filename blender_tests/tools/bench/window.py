@@ -1,4 +1,4 @@
-"""What an artist at a real window waits for: gaps of Blender's main loop in a render, pictures of a 3D view."""
+"""Delays that an artist sees in a real window: gaps of Blender's main loop in a render, pictures of a 3D view."""
 
 import json
 import subprocess
@@ -19,18 +19,18 @@ _REGION = (960, 540)
 
 
 def gaps(rounds, seconds, threads):
-    """{engine: {longest, median: seconds}} of Lancer and Cycles by turns."""
+    """Return {engine: {longest, median: seconds}} of Lancer and Cycles, measured by turns."""
     answers = _answers(rounds, "window_gaps.py", _SCREEN, seconds, threads)
     return {engine: middles(found, ("longest", "median")) for engine, found in answers.items()}
 
 
 def view(rounds, threads):
-    """{engine: {edits, moves: seconds until seen, pictures_per_second, pixel_size}} of both engines by turns."""
+    """Return {engine: {edits, moves: seconds until shown, pictures_per_second, pixel_size}}, measured by turns."""
     answers = _answers(rounds, "window_view.py", _REGION, threads)
     for answer in (answer for found in answers.values() for answer in found):
         if answer["region"] != list(_REGION):
             raise Failed(f"the view has {answer['region']} pixels")
-        # Of several edits and moves in one window.
+        # Medians of several edits and moves in one window.
         answer.update({name: middle(answer[name])["median"] for name in ("edits", "moves")})
     names = ("edits", "moves", "pictures_per_second")
     figures = {engine: middles(found, names) for engine, found in answers.items()}
@@ -39,7 +39,7 @@ def view(rounds, threads):
 
 
 def _answers(rounds, script, size, *arguments):
-    """{engine: what each window answered}"""
+    """Return {engine: [answer of each window]}."""
     with windows.screen(*_SCREEN) as display:
         return by_turns(rounds, _ENGINES, lambda engine, _: _measured(display, script, size, engine, *arguments))
 

@@ -16,7 +16,7 @@ from tools.harness.f12 import press_f12, registered
 
 
 def set_up(name, threads, width=None, height=None, samples=None, bounces=12, seed=0):
-    """The named scene as make_alike has it."""
+    """Return the named scene with the settings of make_alike."""
     scene = scenes.load(name)
     scene.render.resolution_x = width or scene.render.resolution_x
     scene.render.resolution_y = height or scene.render.resolution_y
@@ -26,7 +26,7 @@ def set_up(name, threads, width=None, height=None, samples=None, bounces=12, see
 
 
 def make_alike(scene, threads, bounces=12):
-    """Settings that mean the same to Lancer and to Cycles: no filter, no adaptive end, nothing clamped by Cycles."""
+    """Give Lancer and Cycles equivalent settings: box filter, no adaptive sampling, no clamping in Cycles."""
     render = scene.render
     render.threads_mode = "FIXED"
     render.threads = threads
@@ -51,7 +51,7 @@ def set_samples(scene, samples, seed):
 
 
 def f12(engine, **settings):
-    """The whole of F12 as the artist waits for it, that without sampling, and the peak of memory above the scene in Blender."""
+    """Return the whole time of F12, the time without sampling, and the peak of memory above that of Blender with the scene."""
     scene = set_up(**settings)
     scene.render.engine = engine
     bpy.context.view_layer.update()
@@ -62,7 +62,7 @@ def f12(engine, **settings):
 
 
 def first_shown(**settings):
-    """Seconds from F12 until the first picture is in the result that Blender then shows."""
+    """Return the seconds from F12 until the first picture is in the render result, which Blender then shows."""
     scene = set_up(**settings)
     scene.render.engine = "LANCER"
     bpy.context.view_layer.update()
@@ -80,7 +80,7 @@ def first_shown(**settings):
 
 
 def render(engine, name, threads, width, height, samples, seed, bounces=12, picture=None, first_look=True):
-    """F12 with one sample, then with all of them; the rate is that of the engine's own clock, which starts at the first ray."""
+    """Press F12 with one sample, then with all; the engine's own clock, which starts at the first ray, gives the rate."""
     scene = set_up(name, threads, width, height, samples, bounces)
     scene.render.engine = engine
     bpy.context.view_layer.update()
@@ -104,7 +104,7 @@ def render(engine, name, threads, width, height, samples, seed, bounces=12, pict
 
 
 def snapshot(path, **settings):
-    """Writes the scene for those who do not run inside Blender."""
+    """Write the snapshot for renderers that do not run inside Blender."""
     set_up(**settings)
     start = time.perf_counter()
     exported, _ = export_scene(bpy.context.evaluated_depsgraph_get())
@@ -124,7 +124,7 @@ def snapshot(path, **settings):
 
 
 def prepare(**settings):
-    """Export, upload and build, each by itself, and the bytes that they take on top of Blender's own."""
+    """Return the times of export, upload and build, and the bytes that they add to Blender's own."""
     set_up(**settings)
     depsgraph = bpy.context.evaluated_depsgraph_get()
     workers.reset_peak()
@@ -157,7 +157,7 @@ def prepare(**settings):
 
 
 def accelerators(kinds, **settings):
-    """Rendering alone, once per accelerator, on the same snapshot."""
+    """Return the times of rendering alone, once per accelerator, on the same snapshot."""
     set_up(**settings)
     exported, _ = export_scene(bpy.context.evaluated_depsgraph_get())
     result = {}

@@ -1,1 +1,1 @@
-"""Files that others made, rendered as they are by Lancer and by Cycles: `make corpus`."""
+"""Render files of other authors, unmodified, by Lancer and by Cycles: `make corpus`."""

@@ -1,18 +1,18 @@
-"""A file as its author left it, with those settings made alike that decide what light is looked for, and how long.
+"""Give both engines equivalent settings for the light that they compute and for the number of samples.
 
-What shows in the picture stays the author's: passes, film, filter, lens, blur, world, the depth of paths. What limits or
-smooths light to save samples is taken away, since Lancer has no such limits, and so is what would end a render at another
-number of samples in one engine than in the other. What makes Cycles fast stays: light tree, guiding, roulette.
+The author's settings of the picture stay: passes, film, filter, lens, blur, world, the depth of paths. Settings that limit or
+smooth light to save samples are switched off, since Lancer has none of them, and so are settings that end a render at different
+numbers of samples in the two engines. Settings that make Cycles fast stay: light tree, guiding, roulette.
 """
 
 import bpy
 
 from tools.parity import engines
 
-# What Lancer takes at most.
+# Lancer's maxima.
 _DEEPEST, _MOST_LAYERS = 1024, 1023
 _KINDS = ("diffuse", "glossy", "transmission")
-# What is taken away of Cycles' own settings, where it is not so already: (setting, value, words for the page).
+# Values that Cycles' settings get if they have others: (setting, value, words for the page).
 _TAKEN = (
     ("sample_clamp_direct", 0.0, "Clamp Direct {:g}"),
     ("sample_clamp_indirect", 0.0, "Clamp Indirect {:g}"),
@@ -27,7 +27,7 @@ _TAKEN = (
     ("use_sample_subset", False, ""),
     ("sample_offset", 0, ""),
 )
-# The same of Simplify, whose other settings are Blender's own.
+# The same for Cycles' part of Simplify.
 _SIMPLIFIED = (
     ("use_camera_cull", False, "camera culling"),
     ("use_distance_cull", False, "distance culling"),
@@ -37,7 +37,7 @@ _SIMPLIFIED = (
 
 
 def make_alike(scene, pixels, threads):
-    """Gives what was changed, in words, as far as it changes what Cycles shows. pixels: of the longer side."""
+    """Change the settings. Return the changes that affect Cycles' picture, in words. pixels: of the longer side."""
     told = [*_take(scene.cycles, _TAKEN)]
     if scene.render.use_simplify:
         told += _take(scene.cycles, _SIMPLIFIED)
@@ -60,7 +60,7 @@ def _take(owner, wanted):
 
 
 def _light_paths(scene):
-    """As deep as the file's Total in both, of every kind."""
+    """Give both engines the depth of the file's Total, for every kind of bounce."""
     cycles, lancer = scene.cycles, scene.lancer
     depth = min(cycles.max_bounces, _DEEPEST)
     limits = [f"{kind} {getattr(cycles, kind + '_bounces')}" for kind in _KINDS if getattr(cycles, kind + "_bounces") < depth]
@@ -94,7 +94,7 @@ def _render(render, pixels, threads):
 
 
 def choose_layer(scene):
-    """(the view layer that renders, how many would)."""
+    """Return (the view layer to render, the number of view layers that the file renders)."""
     used = [layer for layer in scene.view_layers if layer.use] or [scene.view_layers[0]]
     for layer in scene.view_layers:
         layer.use = layer == used[0]

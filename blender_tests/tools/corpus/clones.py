@@ -1,4 +1,4 @@
-"""Files out of local clones of repositories, bare or not: a commit's folder as plain files, without touching the clone."""
+"""Check out files from local clones of repositories, bare or not: a folder of a commit, without changing the clone."""
 
 import os
 import subprocess
@@ -9,11 +9,11 @@ _LINK = b"120000"
 
 
 class Missing(Exception):
-    """What is not there, in words for the page."""
+    """A clone, commit or file is missing; the text is for the page."""
 
 
 def find(clones, repository):
-    """The git directory of owner/name below a folder of clones."""
+    """Return the git directory of owner/name below a folder of clones; raises Missing."""
     owner, _, name = repository.partition("/")
     for base in (clones / f"{owner}+{name}", clones / owner / name, clones / owner / f"{name}.git", clones / name):
         for git in (base, base / ".git", base / "repo", base / "repo" / ".git"):
@@ -23,7 +23,7 @@ def find(clones, repository):
 
 
 def check_out(git, commit, root, folder):
-    """Writes what the commit has below root into folder; what is there already stays as it is."""
+    """Write the commit's files below root into folder, once; raises Missing."""
     done = folder / ".complete"
     if done.exists():
         return
@@ -49,7 +49,7 @@ def _write(folder, name, data, mode):
     path.parent.mkdir(parents=True, exist_ok=True)
     if mode == _LINK:
         target = Path(os.path.normpath(path.parent / os.fsdecode(data)))
-        # What points out of the repository is of another machine.
+        # A link out of the repository points to a file of another machine.
         if target.is_relative_to(folder) and not os.path.lexists(path):
             path.symlink_to(os.fsdecode(data))
         return
@@ -61,7 +61,7 @@ def _git(git, *arguments):
 
 
 class _Objects:
-    """Contents by their numbers; None for those that a partial clone lacks."""
+    """Contents of objects by their hashes; None for objects that a partial clone lacks."""
 
     def __init__(self, git):
         command = ["git", "--git-dir", git, "cat-file", "--batch"]

@@ -1,4 +1,4 @@
-"""A camera for files that have none: it looks at all that renders."""
+"""A camera for files that have none: it frames all rendered objects."""
 
 import math
 
@@ -12,7 +12,7 @@ _MARGIN = 1.1
 
 
 def find_camera(scene, layer):
-    """Gives the scene a camera where it has none. What was done, in words; nothing where it has one."""
+    """Give a scene without a camera one. Return the change in words, or an empty text."""
     if scene.camera is not None:
         return ""
     found = next((thing for thing in scene.objects if thing.type == "CAMERA"), None)
@@ -33,7 +33,7 @@ def find_camera(scene, layer):
 
 
 def _sphere(layer):
-    """(middle, radius) about the boxes of all that renders; of the unit sphere where nothing does."""
+    """Return (middle, radius) of a sphere about the bounding boxes of all rendered objects; (0, 1) if there are none."""
     depsgraph = bpy.context.evaluated_depsgraph_get()
     corners = []
     for entry in depsgraph.object_instances:

@@ -1,4 +1,4 @@
-"""One file by both engines: a first look, renders by turns with the same seeds and samples, and what they say of each other."""
+"""Measure one file with both engines: a first render, renders by turns with the same seeds and samples, and a verdict."""
 
 import dataclasses
 import tempfile
@@ -17,12 +17,12 @@ from . import noise
 
 # Real files mix Principled and multiple scattering with everything else.
 KIND = figures.KINDS["LOBES"]
-# Beside the squares of that kind so many across the picture, whose means have less noise for a fault to hide in.
+# Besides the blocks of that kind, the picture is compared in this many larger squares across, whose means have less noise.
 _LARGE_SQUARES = 8
 ENGINES = ("LANCER", "CYCLES")
-# What the budget leaves for renders at least, however long opening took.
+# Least share of the budget for renders, however long opening the file takes.
 _LEAST_SHARE = 0.4
-# A file that differs and says nothing is looked at once more with so many times the samples.
+# A file that differs without a message is rendered once more with this many times the samples.
 _AGAIN = 4
 
 
@@ -45,7 +45,7 @@ QUICK = Plan(budget=8.0, probe=2, rounds=2, least=2, most=64, limit=120.0)
 
 
 class Measurement:
-    """start(engine): a Conversation with a worker that has nothing open yet; show(text): what is going on."""
+    """start(engine): returns a Conversation with a new worker; show(text): shows the progress."""
 
     def __init__(self, file, plan, start, pictures, show):
         self.file, self.plan, self.pictures, self.show = file, plan, pictures, show
@@ -55,7 +55,7 @@ class Measurement:
         self.row |= {"messages": [], "missing": {}}
 
     def run(self):
-        """The row of the file: its verdict, one of verdicts.ORDER, a sentence, and all that was measured."""
+        """Return the row of the file: its verdict, one of verdicts.ORDER, a sentence, and all figures."""
         began = time.monotonic()
         try:
             if self.file.missing:
@@ -79,7 +79,7 @@ class Measurement:
                 self._open(engine)
             except Ended as end:
                 return self._end("unreadable", str(end))
-        # A file that one engine cannot render may still show what the other makes of it.
+        # If one engine cannot render a file, the page still shows the other's picture.
         failures, probes = {}, {}
         for engine in ENGINES:
             try:
@@ -109,7 +109,7 @@ class Measurement:
         self.row |= opened
 
     def _render(self, engine, samples, seed):
-        """(picture, figures); what the render says besides is put into the row."""
+        """Return (picture, figures); add the render's messages to the row."""
         self._asked = engine
         self.show(f"{engine.title()}, {samples} samples, seed {seed}")
         path = self._folder / f"{engine}.npy"
@@ -121,12 +121,12 @@ class Measurement:
         record = self.row["engines"].setdefault(engine, {"peak_bytes": 0})
         found["peak_bytes"] = max(found["peak_bytes"], record["peak_bytes"])
         record.update({name: value for name, value in found.items() if name not in ("wall", "seconds", "size")})
-        # Before the first ray and after the last one.
+        # The time before the first ray and after the last one.
         record.setdefault("setup_seconds", max(0.0, found["wall"] - found["seconds"]))
         return np.load(path), found
 
     def _samples(self, probes):
-        """A power of two, so many that all rounds of both engines take about the budget."""
+        """Return the number of samples, a power of two, for which all rounds of both engines take about the budget."""
         plan = self.plan
         per_sample = sum(max(found["seconds"], 1e-3) / plan.probe for found in probes.values())
         setups = sum(record["setup_seconds"] for record in self.row["engines"].values())
@@ -140,13 +140,13 @@ class Measurement:
         samples = self._samples(probes)
         self._look(samples, 1)
         if self.row["verdict"] == "untold" and samples < self.plan.most:
-            # Chance must not accuse anybody.
+            # A difference by chance must not count as a fault.
             self.row["first_look"] = self.row["parity"]
             self._look(_AGAIN * samples, 1 + self.plan.rounds)
         return self.row
 
     def _look(self, samples, first_seed):
-        """Renders by turns and judges: fills the row."""
+        """Render by turns, judge, and fill the row."""
         found = by_turns(self.plan.rounds, ENGINES, lambda engine, number: self._render(engine, samples, first_seed + number))
         seconds = {engine: sum(told["seconds"] for _, told in found[engine]) for engine in ENGINES}
         ours, theirs = (np.array([picture for picture, _ in found[engine]], np.float64) for engine in ENGINES)
@@ -188,13 +188,13 @@ class Measurement:
 
     def _compare_noise(self, ours, theirs, seconds):
         found = noise.compare(*noise.relative_variance(ours, theirs))
-        # A picture without noise, as of the sky alone, says nothing of speed.
+        # A picture without noise, such as one of the sky alone, has no efficiency.
         if found:
             speed = seconds["CYCLES"] / max(seconds["LANCER"], 0.01)
             self.row |= {"speed": speed, "variance": found, "efficiency": speed / found["ratio"]}
 
     def _write(self, ours, theirs):
-        """Pictures for the page, row 0 above."""
+        """Write the pictures for the page, row 0 at the top."""
         self.pictures.mkdir(parents=True, exist_ok=True)
         flipped = (np.nan_to_num(values[::-1, :, :3], posinf=0.0, neginf=0.0) for values in (ours, theirs))
         self.row["pictures"] = write_pair(str(self.pictures), self.file.slug, *flipped)
@@ -206,13 +206,13 @@ class Measurement:
 
 
 def _finite(ours, theirs):
-    """The same with 0 in both where either is not finite."""
+    """Return both with pixels set to 0 where either has a value that is not finite."""
     good = (np.isfinite(ours) & np.isfinite(theirs)).all(axis=(0, 3))[None, :, :, None]
     return np.where(good, ours, 0.0), np.where(good, theirs, 0.0)
 
 
 def _parts(ours, theirs):
-    """{name: Figures} of the means of even and of odd seeds."""
+    """Return {name: Figures} from the means of even and of odd seeds."""
     halves = [[values[start::2].mean(axis=0) for start in (0, 1)] for values in (ours, theirs)]
     large = KIND._replace(block=max(KIND.block, max(ours.shape[1:3]) // _LARGE_SQUARES))
     parts = {"Combined": (slice(0, 3), KIND), "Combined, large squares": (slice(0, 3), large), "Alpha": (slice(3, 4), KIND)}

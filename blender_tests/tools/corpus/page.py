@@ -1,4 +1,4 @@
-"""What a run leaves: the page of every file with both pictures and figures, in a table that can be sorted; and the summary."""
+"""The output of a run: a page with both pictures and the figures of every file, in a sortable table; and the summary."""
 
 from pathlib import Path
 
@@ -24,7 +24,7 @@ _HEAD += ("wide", "Lancer set-up, s", "export", "build", "Cycles set-up", "Lance
 
 
 def write(figures, folder):
-    """Writes index.html and corpus.json."""
+    """Write index.html and corpus.json."""
     rows = sorted(figures["files"], key=lambda row: (verdicts.ORDER.index(row["verdict"]), row["name"]))
     found = figures["summary"]
     buttons = {"": f"all {found['files']} files"}
@@ -58,7 +58,7 @@ def describe(figures):
 
 
 def _means(means, wide=False):
-    """(head, rows); wide: with the share of the vertices that kernels of many lanes shaded."""
+    """Return (head, rows); wide: add the share of the vertices that kernels of many lanes shaded."""
     rows = []
     for title, key in _GROUPS:
         found = means[key]

@@ -1,7 +1,7 @@
 """`make corpus`: files as their authors left them, by Lancer and by Cycles: build/corpus/index.html.
 
-Every file is opened by two processes, one for each engine, with limits of time and memory, so that a crash or a hang is a row.
-What a file has been measured at is kept, so a run that was broken off goes on where it ended.
+Two processes open every file, one for each engine, with limits of time and memory, so that a crash or a hang is a row.
+The figures of each file are kept, so that an interrupted run continues where it ended.
 """
 
 import argparse
@@ -20,9 +20,9 @@ from tools.harness.workers import START
 
 from . import measure, page, sources, verdicts
 
-# Two processes have a file open at a time.
+# Share of the machine's memory for one process; two processes have a file open at a time.
 _SHARE_OF_MEMORY = 0.4
-# What decides a row; the rest of this folder makes pages of them.
+# Modules on which a row depends; the rest of this folder writes pages.
 _MEASURING = ("alike", "framing", "measure", "noise", "worker")
 
 
@@ -51,7 +51,7 @@ def make_plan(arguments):
 
 
 class Workers:
-    """Starts a worker in a Blender without anybody's settings."""
+    """Starts workers in a Blender with factory settings."""
 
     def __init__(self, arguments):
         self.output = arguments.output
@@ -78,7 +78,7 @@ def find_files(arguments):
 
 
 class Kept:
-    """What a result depends on."""
+    """Results that are kept, with a key of everything that they depend on."""
 
     def __init__(self, arguments, plan):
         own = {"library": digest_of_library()}
@@ -96,7 +96,7 @@ class Kept:
 
 
 class Place:
-    """Where the run is, and how long it will still take."""
+    """The progress of the run, and its remaining time."""
 
     def __init__(self, count):
         self.say, self.count, self.number, self.measured = Progress(), count, 0, []
@@ -134,7 +134,7 @@ def measure_all(files, arguments, plan, figures):
         row = results.row(file, work)
         place.end(row, bool(fresh))
         figures["files"].append(row)
-        # A run takes long: what there is so far can be looked at.
+        # A run takes long: the page has the rows so far.
         write(figures, arguments.output)
 
 

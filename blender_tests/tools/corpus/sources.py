@@ -1,4 +1,4 @@
-"""Which files there are: all of a folder, or those that scenes/corpus.toml names, out of local clones."""
+"""The files of a run: all of a folder, or those that scenes/corpus.toml names, from local clones."""
 
 import hashlib
 from dataclasses import dataclass
@@ -13,21 +13,21 @@ from . import clones
 
 @dataclass(frozen=True)
 class File:
-    name: str  # as it is told: the path below the folder, or owner/name and the path in the repository
-    path: Path | None  # None where it is not there
+    name: str  # the path below the folder, or owner/name and the path in the repository
+    path: Path | None  # None: the file is missing
     kind: str = ""
     note: str = ""
-    missing: str = ""  # why it is not there
+    missing: str = ""  # why it is missing
 
     @property
     def slug(self):
-        """A file name of its own for what is kept of it."""
+        """Return a unique file name for the kept results of this file."""
         plain = "".join(c if c.isalnum() or c in "-." else "_" for c in self.name)
         return f"{plain[-80:]}-{hashlib.sha256(self.name.encode()).hexdigest()[:8]}"
 
 
 def in_folder(folder):
-    """All .blend files below it, in the order of their names."""
+    """Return all .blend files below a folder, sorted by name."""
     if not folder.is_dir():
         raise SystemExit(f"{folder} is no folder")
     paths = sorted(path for path in folder.rglob("*.blend") if path.is_file())
@@ -35,10 +35,10 @@ def in_folder(folder):
 
 
 def in_list(listing, clone_folder, into):
-    """The files of corpus.toml; what is not in the clones is told as missing.
+    """Return the files of corpus.toml; those that are not in the clones have the reason in missing.
 
-    [[file]]: repository (owner/name), commit, path; kind, note; root, the folder of the repository that has all that the file
-    needs, where not all of it is wanted.
+    [[file]]: repository (owner/name), commit, path; kind, note; root, optional: the folder of the repository with everything
+    that the file needs.
     """
     with open(listing, "rb") as file:
         rows = tomllib.load(file).get("file", [])

@@ -1,11 +1,11 @@
-"""What the rows come to: counts, means, and what is missing, ranked by how many files it would make right."""
+"""Summarise the rows: counts, means, and missing features, ranked by the number of files that they would make right."""
 
 import math
 from collections import Counter
 
 from tools.harness import estimates
 
-# What each verdict says of one file and of several, in the order of the page.
+# The words of each verdict for one file and for several, in the order of the page.
 _WORDS = {
     "untold": ("differs without a message", "differ without a message"),
     "failed": ("fails in Lancer", "fail in Lancer"),
@@ -19,7 +19,7 @@ _WORDS = {
 }
 ORDER = tuple(_WORDS)
 EQUAL = ("equal", "noise")
-# What a run must not have.
+# Verdicts with which a run fails.
 FAULTS = ("untold", "failed")
 
 
@@ -33,7 +33,7 @@ def counts(rows):
 
 
 def means(rows):
-    """Geometric means of Lancer over Cycles, over files with equal pictures and over all: {"equal", "all": {...}}."""
+    """Return geometric means of Lancer over Cycles, of the files with equal pictures and of all: {"equal", "all": {...}}."""
     return {
         "equal": _means([row for row in rows if row["verdict"] in EQUAL]),
         "all": _means(rows),
@@ -55,17 +55,17 @@ def _means(rows):
 
 
 def wide_share(row):
-    """Share of the vertices that the kernels of many lanes shaded; None where there were none."""
+    """Return the share of the vertices that the kernels of many lanes shaded; None if there were no vertices."""
     record = row["engines"].get("LANCER", {})
     wide, narrow = record.get("wide_vertices", 0), record.get("narrow_vertices", 0)
     return wide / (wide + narrow) if wide + narrow else None
 
 
 def rank(rows):
-    """[{"key", "completes", "total", "files", "uses"}]: each next one makes most files right, given all before.
+    """Return [{"key", "completes", "total", "files", "uses"}]: each next feature makes most files right, given all before.
 
-    rows: of all files; those that differ with a message count. Of things that complete as many, that of more of these files
-    comes first. files: that have it at all; uses: how often it was met in them.
+    rows: of all files; only files that differ with a message are completed. Of features that complete equally many files, the
+    one that more of these files use comes first. files: number of all files that use the feature; uses: number of its uses.
     """
     open_ = [set(row["missing"]) for row in rows if row["verdict"] == "told" and row["missing"]]
     everywhere, uses = Counter(), Counter()
@@ -90,7 +90,7 @@ def summary(rows):
 
 
 def sentence(found):
-    """The counts in a line."""
+    """Return the counts in a line."""
     return f"{found['files']} files: " + ", ".join(
         f"{count} {words(verdict, count)}" for verdict, count in found["counts"].items()
     )

@@ -1,7 +1,7 @@
-"""One file in one Blender, for one engine: answers requests, a line of JSON each, until they end.
+"""One file in one Blender, for one engine: answer requests, a line of JSON each, until standard input ends.
 
 Runs under a Python that has bpy (start.py corpus.worker FD), and inside Blender: blender -b -P start.py -- corpus.worker FD
-FD: the file descriptor that answers go to; what Blender and libraries print is of no interest.
+FD: the file descriptor of the answers; standard output, where Blender and libraries print, is ignored.
 """
 
 import json
@@ -19,7 +19,7 @@ from tools.harness.f12 import press_f12
 
 
 def open_file(path, pixels, threads):
-    """Opens a file of anybody's without running what it brings along, and tells what it is."""
+    """Open a file without running its scripts. Return facts of it."""
     bpy.ops.wm.open_mainfile(filepath=path, load_ui=False, use_scripts=False)
     scene = bpy.context.scene
     told = []
@@ -43,7 +43,9 @@ def open_file(path, pixels, threads):
 
 
 def render(engine, samples, seed, picture):
-    """F12. Seconds by the engine's own clock and by the wall, memory above Blender's with the file, the picture as .npy."""
+    """Press F12 and save the picture as .npy. Return the seconds by the engine's clock and by the wall, and the memory above
+    that of Blender with the file.
+    """
     scene = bpy.context.scene
     scene.render.engine = engine
     alike.set_samples(scene, samples, seed)
@@ -64,7 +66,7 @@ def render(engine, samples, seed, picture):
 
 
 class _timed_export:
-    """As a context: the list of seconds that the exports of renders took meanwhile."""
+    """A context: the list of the seconds of each export within it."""
 
     def __enter__(self):
         self.export, seconds = addon.engine.render_engine.export_scene, []
@@ -92,7 +94,7 @@ def serve(answers):
         try:
             answer = TASKS[request.pop("task")](**request)
         except Exception as error:
-            # What Blender raises has its reports in it, a line each.
+            # The text of Blender's errors has its reports, a line each.
             lines = [text for text in str(error).splitlines() if text.strip()] or [type(error).__name__]
             answer = {"error": lines[0][:500]}
         answers.write(json.dumps(answer) + "\n")

@@ -1,1 +1,1 @@
-"""The course, chapter by chapter, measured now: `make course`."""
+"""Measure the course, chapter by chapter: `make course`."""

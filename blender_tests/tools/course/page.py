@@ -1,4 +1,4 @@
-"""The page that a run leaves: one HTML file, its pictures beside it, nothing from the network."""
+"""The page of a run: one HTML file and its pictures, nothing from the network."""
 
 import os
 
@@ -23,7 +23,7 @@ _INTRODUCTION = (
 
 
 def write(chapters, folder, title):
-    """Writes index.html, course.json and the pictures into a folder that exists."""
+    """Write index.html, course.json and the pictures into an existing folder."""
     names = [f"{place}-{picture.name}.png" for place, chapter in enumerate(chapters, 1) for picture in chapter.pictures]
     if len(set(names)) < len(names):
         raise ValueError("two pictures of a chapter have one name")

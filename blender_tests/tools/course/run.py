@@ -1,4 +1,4 @@
-"""Renders and measures the course's report: `make course`."""
+"""Render and measure the course's report: `make course`."""
 
 import sys
 
@@ -24,7 +24,7 @@ def main():
         sys.exit(f"no chapter is called {arguments.only}; there are {', '.join(PROSE)}")
     arguments.output.mkdir(parents=True, exist_ok=True)
     chapters = []
-    # What Blender says of the scenes that it exports is no part of the report.
+    # Messages about the exported scenes do not belong to the report.
     with captured_output() as (terminal, _):
         say = Progress(terminal)
         for place, name in enumerate(wanted, 1):

@@ -1,1 +1,1 @@
-"""What each feature costs: `make features`."""
+"""The cost of each feature: `make features`."""

@@ -1,8 +1,8 @@
-"""One feature at a time in a minimal scene: where it is used, and where it is only there, out of sight.
+"""One feature at a time in a minimal scene: used, and only compiled in.
 
-The minimal scene is a matt ball on a matt floor under a point lamp, with a small matt square behind the camera that rays
-hardly ever meet. A feature is used by the ball, the lamp, the sky or the camera; it is only compiled in where the square alone
-has it, or a second lamp below the floor, or a sky that no ray may see: the scene then needs the code, and no path does.
+The minimal scene is a diffuse ball on a diffuse floor under a point lamp, with a small diffuse square behind the camera that
+rays rarely hit. The ball, the lamp, the sky or the camera uses a feature; it is only compiled in if the square alone has it, or
+a second lamp below the floor, or a sky that is hidden from all rays: the scene then needs the code, but no path runs it.
 """
 
 import dataclasses
@@ -39,8 +39,8 @@ SIZE = 96
 class Case:
     name: str
     used: Callable | None  # snapshot -> snapshot
-    idle: Callable | None = None  # the same, out of sight
-    idle_base: Callable | None = None  # what idle is compared with where that is not the minimal scene
+    idle: Callable | None = None  # the same with the feature only compiled in
+    idle_base: Callable | None = None  # the scene that idle is compared with, if not the minimal scene
     in_classic: str = ""  # why it is not idle in CLASSIC
 
 
@@ -67,7 +67,7 @@ def _with_uvs(mesh):
     return dataclasses.replace(mesh, uvs=mesh.positions[mesh.triangles][..., :2])
 
 
-# ---- what is done to whom ----
+# ---- changes of the scene ----
 
 
 def _on(number, material):
@@ -84,7 +84,7 @@ def _surface(name, material):
 
 
 def _objects(name, **columns):
-    """Instances with other values in columns of their table."""
+    """Return the case of instances with other values in columns of their table."""
 
     def on(number):
         def change(snapshot):
@@ -104,7 +104,7 @@ _ASKED = "every lamp is asked at every hit"
 
 
 def _glowing(name, material):
-    """Below the floor it lights nothing, and is compared with a lamp there."""
+    """Return the case of an emissive material: below the floor it lights nothing, and is compared with a lamp there."""
 
     def below(snapshot):
         matrices = snapshot.instances.matrices.copy()
@@ -125,7 +125,7 @@ def _lamp(name, **fields):
         return dataclasses.replace(snapshot, lights=(Light("lamp", **light),))
 
     def second(lamp):
-        # Below the floor, and shining away from it; a sun, which is nowhere, against it.
+        # Below the floor, emitting away from it; a sun, which has no place, from below.
         turn = tiny.rotate_x(math.pi if lamp.kind == LightKind.SUN else 0.0)
         below = dataclasses.replace(lamp, name="second", matrix=tiny.move(0, 0, -5) @ turn)
         return lambda snapshot: dataclasses.replace(snapshot, lights=(*snapshot.lights, below))
@@ -152,7 +152,7 @@ def _settings(name, **fields):
 
 
 def _copies(snapshot, meshes):
-    """A second square behind the first."""
+    """Add a second square behind the first."""
     table = snapshot.instances
     order = [BALL, FLOOR, SQUARE, SQUARE]
     matrices = table.matrices[order].copy()

@@ -1,4 +1,4 @@
-"""The page of what features cost: one table, with a verdict where a feature is only compiled in."""
+"""The page of the features' costs: one table, with a verdict on each feature that is only compiled in."""
 
 from tools.harness import page, verdicts
 
@@ -14,7 +14,7 @@ def percent(value):
 
 
 def verdict(value, goal):
-    """True where it is within the goal, False where it is beyond it for certain, None where the interval holds the goal."""
+    """Return True if the interval is within the goal, False if it is beyond the goal, None if it contains the goal."""
     if value["cost"] + value["uncertainty"] <= goal:
         return True
     return False if value["cost"] - value["uncertainty"] > goal else None

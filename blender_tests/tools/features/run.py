@@ -1,8 +1,8 @@
-"""`make features`: what each feature costs where it is used, and where it is only compiled in: build/features/index.html.
+"""`make features`: the cost of each feature where it is used, and where it is only compiled in: build/features/index.html.
 
-Both scenes of a comparison take turns in one process, on one thread, in runs of a twentieth of a second of the processor's
-time; each round makes both anew, so that no chance of memory stays with one of them. Figures are medians over the rounds, with
-the 95 % interval of the median.
+Both scenes of a comparison take turns in one process, on one thread, in runs of a twentieth of a second of processor time. Each
+round uploads both scenes anew, so that no layout of memory favours one of them. Figures are medians over the rounds, with the
+95 % interval of the median.
 """
 
 import time
@@ -18,7 +18,7 @@ from tools.harness.terminal import Progress, make_parser, wanted
 from . import cases, page
 
 OUTPUT = BUILD / "features"
-# At most so much where a feature is only compiled in.
+# Largest cost of a feature that is only compiled in.
 GOAL = 0.02
 _RUN_SECONDS = 0.05
 _LEAST_ROUNDS = 8
@@ -30,7 +30,7 @@ def read_arguments():
 
 
 def seconds_of(snapshot, samples):
-    """Of the processor, for a render from its first sample on; and the kernel that ran."""
+    """Return the processor's seconds of a render from its first sample on, and the kernel that ran."""
     with Session.upload(snapshot) as session:
         session.render_all(1)
         start = time.process_time()
@@ -46,11 +46,13 @@ def samples_for(snapshot):
 
 
 def compare(base, other, interval, limit):
-    """Time of other over that of base for the same samples; rounds until the interval is as small, or for limit seconds."""
+    """Return the time of other over that of base for the same samples. Rounds run until the interval is this small, or for
+    limit seconds.
+    """
     samples = samples_for(base)
     start, ratios = time.monotonic(), []
     while True:
-        # With, without, without, with: what drifts evenly falls on both.
+        # In the order base, other, other, base an even drift of the machine affects both alike.
         a, kernel_base = seconds_of(base, samples)
         b, kernel = seconds_of(other, samples)
         b += seconds_of(other, samples)[0]
@@ -88,7 +90,7 @@ def main():
             figures["cases"].setdefault(case.name, {})[integrator.name] = found
             told = ", ".join(f"{kind} {page.percent(value)}" for kind, value in found.items())
             say(f"{integrator.name:<8} {case.name:<40} {told}")
-            # A run takes long: what there is so far can be looked at.
+            # A run takes long: the page has the figures so far.
             page.write(figures, OUTPUT)
     print((OUTPUT / "index.html").relative_to(ROOT))
 

@@ -1,1 +1,1 @@
-"""What all measuring programs share: options, terminal, processes, turns, results that are kept, arithmetic, pages."""
+"""Code that the measuring programs share: options, terminal, processes, turns, kept results, arithmetic, pages."""

@@ -1,4 +1,4 @@
-"""A process that answers requests, each within its time and its memory; when it ends otherwise, why it did."""
+"""A process that answers requests, each within limits of time and memory; Ended has the reason of a failure."""
 
 import contextlib
 import json
@@ -12,7 +12,7 @@ _STEP = 0.1
 
 
 class Ended(Exception):
-    """kind: "crash", "timeout", "memory", or "error", after which the process goes on answering."""
+    """kind: "crash", "timeout" or "memory", which end the process, or "error", after which it still answers requests."""
 
     def __init__(self, kind, text):
         super().__init__(text)
@@ -21,7 +21,7 @@ class Ended(Exception):
 
 class Conversation:
     def __init__(self, command, log, environment=None):
-        """command is given the number of the file descriptor that it answers to. log: where what it prints goes."""
+        """command gets the number of the file descriptor of its answers as an argument. log: the file of its printed output."""
         self.answers, theirs = os.pipe()
         with open(log, "ab") as output:
             self.process = subprocess.Popen(
@@ -44,7 +44,7 @@ class Conversation:
         os.close(self.answers)
 
     def ask(self, task, seconds, bytes_, **request):
-        """The answer to a request, within so many seconds and bytes of memory; raises Ended."""
+        """Return the answer to a request; raises Ended, also if it takes more than the seconds or bytes of memory."""
         deadline = time.monotonic() + seconds
         try:
             self.process.stdin.write(json.dumps({"task": task, **request}).encode() + b"\n")
@@ -76,7 +76,7 @@ class Conversation:
             with open(f"/proc/{self.process.pid}/statm", encoding="ascii") as file:
                 return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
         except (OSError, IndexError):
-            # It ended just now; the pipe will say so.
+            # The process has just ended; the pipe will report it.
             return 0
 
     def _crash(self):
@@ -86,7 +86,7 @@ class Conversation:
 
     def _end(self):
         if self.process.poll() is None:
-            # It leads a session of its own: what it has started goes with it.
+            # The process leads a session, so that its own child processes end with it.
             os.killpg(self.process.pid, signal.SIGKILL)
         self.process.wait()
         with contextlib.suppress(BrokenPipeError):

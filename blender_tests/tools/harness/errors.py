@@ -1,8 +1,8 @@
-"""How far pictures are from a converged one.
+"""Errors of pictures against a converged one.
 
-The error of a picture is the root mean square over its pixels of (luminance - truth) / (truth + 1 % of the mean truth), as the
-library tells it: lancer_error of lancer.h. The truth is a reference with noise of its own, known from its parts: that noise is
-taken off errors, in squares.
+The error of a picture is the root mean square over its pixels of (luminance - truth) / (truth + 1 % of the mean truth), like
+the library's estimate: lancer_error of lancer.h. The truth is a reference whose own noise is estimated from its parts, and
+subtracted from errors, in squares.
 """
 
 from dataclasses import dataclass
@@ -16,12 +16,12 @@ ROUNDING = 2.0**-21
 
 
 def luminance(picture):
-    """(height, width) in double."""
+    """Return the luminances, (height, width) in double precision."""
     return np.asarray(picture, np.float64)[..., :3] @ _BT709
 
 
 def level_of(mean):
-    """What errors are relative to."""
+    """Return the level that errors are relative to."""
     return mean + _FLOOR * mean.mean()
 
 
@@ -45,7 +45,7 @@ class Reference:
 
     @property
     def variance(self):
-        """Of the mean."""
+        """Return the variance of the mean."""
         return self.parts.var(axis=0, ddof=1) / len(self.parts)
 
     @property
@@ -54,7 +54,7 @@ class Reference:
 
     @property
     def error(self):
-        """Of the reference itself."""
+        """Return the error of the reference itself."""
         return float(np.sqrt(self._own_square()))
 
     def _own_square(self):
@@ -62,18 +62,19 @@ class Reference:
 
     @property
     def noisy(self):
-        """Which pixels have any noise; the others are right at the first sample."""
+        """Return which pixels have noise; the others are exact at the first sample."""
         return np.ptp(self.parts, axis=0) > ROUNDING * np.abs(self.mean)
 
     def distance(self, picture):
-        """The error of a picture's luminances, less what the reference's own noise adds."""
+        """Return the error of a picture's luminances, less the reference's own noise."""
         square = np.mean(((picture - self.mean) / self.level) ** 2) - self._own_square()
         return float(np.sqrt(max(0.0, square)))
 
     def split(self, pictures):
-        """(noise, bias) of one picture, from the luminances of several independent ones.
+        """Return (noise, bias) of one picture, from the luminances of several independent ones.
 
-        Their mean is as far from the reference as the bias, a share of their noise and the reference's own noise make it.
+        The squared distance of their mean from the reference is that of the bias, plus a share of their noise, plus the
+        reference's own noise.
         """
         mean, level = sum(pictures) / len(pictures), self.level
         noise = sum(np.mean(((picture - mean) / level) ** 2) for picture in pictures) / (len(pictures) - 1)

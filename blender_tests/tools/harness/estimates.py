@@ -1,4 +1,4 @@
-"""Figures of repeated measurements: squared errors, efficiency, and how sure they are."""
+"""Figures of repeated measurements: squared errors, efficiency, and their intervals."""
 
 import functools
 import math
@@ -9,21 +9,21 @@ _RESAMPLES = 2000
 
 
 def squared_error(picture, reference, reference_variance=0.0):
-    """Mean over pixels and channels of (I - R)^2, less what the reference's own noise adds; never below zero."""
+    """Return the mean over pixels and channels of (I - R)^2, less the reference's own variance; never below zero."""
     difference = np.asarray(picture, np.float64) - np.asarray(reference, np.float64)
     return max(0.0, float(np.mean(difference**2)) - reference_variance)
 
 
 def join_halves(first, second):
-    """(reference, the mean variance of its pixels) of two independent pictures of equal weight."""
+    """Return (reference, the mean variance of its pixels) of two independent pictures of equal weight."""
     first, second = np.asarray(first, np.float64), np.asarray(second, np.float64)
-    # The mean of two has half the variance of one, and their difference twice that of one.
+    # The mean of two pictures has half the variance of one, their difference twice that of one.
     return 0.5 * (first + second), float(np.mean((first - second) ** 2)) / 4.0
 
 
 @functools.cache
 def student_quantile(freedom, probability=0.975):
-    """Of Student's t; the distribution function is integrated by Simpson's rule and inverted by bisection."""
+    """Return a quantile of Student's t: the density is integrated by Simpson's rule, and the integral inverted by bisection."""
     scale = math.exp(math.lgamma((freedom + 1) / 2) - math.lgamma(freedom / 2)) / math.sqrt(freedom * math.pi)
 
     def distribution(t):
@@ -39,10 +39,11 @@ def student_quantile(freedom, probability=0.975):
 
 
 def interval(rows, statistic, seed=1):
-    """(value, low, high), 95 %, of a positive function of the means of columns; rows are measurements, one has no interval.
+    """Return (value, low, high), the 95 % interval of a positive function of the means of columns; rows are measurements.
 
-    The standard error of its logarithm is that of resampled rows. A resample of n rows varies (n - 1)/n as much as n fresh
-    ones, and few rows know their spread badly: so it is widened by sqrt(n/(n - 1)) and by Student's t.
+    Resampled rows give the standard error of its logarithm. A resample of n rows has (n - 1)/n times the variance of n new
+    rows, and the spread of few rows is uncertain: so the error is widened by sqrt(n/(n - 1)) and by Student's t. low and high
+    are None for a single row.
     """
     rows = np.asarray(rows, np.float64)
     value, count = float(statistic(rows.mean(axis=0))), len(rows)
@@ -55,14 +56,14 @@ def interval(rows, statistic, seed=1):
 
 
 def efficiency(errors, seconds):
-    """1 / (mean squared error x seconds) over runs with different seeds: {"value", "low", "high"}."""
+    """Return 1 / (mean squared error x seconds) over runs with different seeds: {"value", "low", "high"}."""
     rows = np.stack([errors, seconds], axis=1)
     value, low, high = interval(rows, lambda means: _inverse(means[..., 0] * means[..., 1]))
     return {"value": value, "low": low, "high": high}
 
 
 def efficiency_ratio(ours, theirs):
-    """Ours over theirs, each (errors, seconds) of runs that took turns."""
+    """Return our efficiency over theirs; each is (errors, seconds) of runs that took turns."""
     count = min(len(ours[0]), len(theirs[0]))
     rows = np.stack([column[:count] for column in (*ours, *theirs)], axis=1)
 

@@ -1,4 +1,4 @@
-"""F12 as programs press it: the engine registered, the picture's own numbers, and the time that the engine took."""
+"""Press F12 from a program: register the engine, read the picture's values, and time the engine."""
 
 import os
 import re
@@ -16,7 +16,7 @@ from . import workers
 
 
 def registered(work):
-    """work() while the engine is registered."""
+    """Return work(), which is called while the engine is registered."""
     addon.register()
     try:
         return work()
@@ -28,11 +28,11 @@ class Rendered(NamedTuple):
     picture: np.ndarray  # (h, w, 4); row 0 is the bottom row
     wall: float  # seconds from F12 to the file
     seconds: float  # by the engine's own clock, from its first ray on
-    peak: int  # bytes that the process has held at most, before the picture was read
+    peak: int  # peak of the process's bytes, before the picture is read
 
 
 def press_f12(scene):
-    """What a render writes are the numbers themselves, whatever the file's author wanted to have written."""
+    """Render to a file of linear floats, whatever the output settings of the file. Return a Rendered."""
     _write_floats(scene)
     with tempfile.TemporaryDirectory() as folder:
         scene.render.filepath = os.path.join(folder, "picture.exr")
@@ -55,7 +55,7 @@ def _write_floats(scene):
 
 
 def _own_clock(scene):
-    """Seconds of the last render; Cycles writes them into the picture's file, to a hundredth."""
+    """Return the seconds of the last render; Cycles writes them into the picture's file, rounded to a hundredth."""
     if scene.render.engine == "LANCER":
         return addon.engine.last_statistics[scene.name]["seconds"]
     with open(scene.render.filepath, "rb") as file:

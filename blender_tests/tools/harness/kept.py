@@ -1,4 +1,4 @@
-"""Results that are kept: a run that was broken off goes on where it ended, and converged pictures serve every run."""
+"""Results that are kept: an interrupted run continues where it ended, and all runs share converged pictures."""
 
 import json
 
@@ -6,7 +6,7 @@ import numpy as np
 
 
 def kept(path, key, measure):
-    """What measure() gives, or gave in an earlier run with the same key."""
+    """Return measure(), or its result of an earlier run with the same key."""
     if path.exists():
         found = json.loads(path.read_text())
         if found["key"] == key:
@@ -18,10 +18,10 @@ def kept(path, key, measure):
 
 
 def kept_picture(path, render):
-    """The array in a file, or what render() gives: the array, or None where it has written it to the path that it is given."""
+    """Return the array in a file. If there is none, render(path) returns the array, or writes it to path and returns None."""
     if not path.exists():
         path.parent.mkdir(parents=True, exist_ok=True)
-        # A render that is broken off leaves no reference.
+        # An interrupted render leaves no reference.
         unfinished = path.with_suffix(".part.npy")
         picture = render(unfinished)
         if picture is not None:

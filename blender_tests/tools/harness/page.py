@@ -1,4 +1,4 @@
-"""The pages and tables that runs leave: NAME.json, index.html, and lines between two marks of a Markdown file."""
+"""The pages and tables of runs: NAME.json, index.html, and lines between two marks of a Markdown file."""
 
 import html
 import json
@@ -13,7 +13,7 @@ img { image-rendering: pixelated; display: block; background: #000 }
 
 
 class Markup(str):
-    """Text that is HTML already."""
+    """Text that is already HTML."""
 
 
 def escaped(text):
@@ -21,7 +21,7 @@ def escaped(text):
 
 
 def element(name, content, **attributes):
-    """An element, without an end where the content is None. class_ is class, data_value data-value; None is left out."""
+    """Return an element, without an end tag if the content is None. class_ is class, data_value data-value; None is omitted."""
     given = {key.rstrip("_").replace("_", "-"): value for key, value in attributes.items() if value is not None}
     told = "".join(f' {key}="{html.escape(str(value))}"' for key, value in given.items())
     return Markup(f"<{name}{told}>" + ("" if content is None else f"{escaped(content)}</{name}>"))
@@ -32,7 +32,7 @@ def lines(texts, between="<br>"):
 
 
 def cell(content, tag="td", first=False):
-    """content: what stands in it; (that, its class); (that, its class, what it is sorted by)."""
+    """Return a cell. content: its text, (text, class), or (text, class, sort key)."""
     content, kind, value = (*content, None)[:3] if isinstance(content, tuple) else (content, "", None)
     kind = f"text {kind}".strip() if first else kind
     return element(tag, content, class_=kind or None, data_value=value)
@@ -43,14 +43,14 @@ def row(cells, tag="td", **attributes):
 
 
 def table(head, rows, kind=None):
-    """rows: lists of cells, or rows that are made already. The first column is text."""
+    """Return a table. rows: lists of cells, or finished rows. The first column is text."""
     made = (one if isinstance(one, Markup) else row(one) for one in rows)
     top, body = element("thead", row(head, "th")), element("tbody", Markup("\n".join(made)))
     return element("table", Markup(f"{top}\n{body}"), class_=kind)
 
 
 def write(folder, name, figures, title, parts, style="", script=""):
-    """Writes NAME.json with the figures and index.html with the parts; text that is no markup is a paragraph."""
+    """Write NAME.json with the figures and index.html with the parts; plain text becomes a paragraph."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / f"{name}.json").write_text(json.dumps(figures, indent=1) + "\n", encoding="utf-8")
     body = "\n".join(part if isinstance(part, Markup) else element("p", part) for part in parts if part)
@@ -61,7 +61,7 @@ def write(folder, name, figures, title, parts, style="", script=""):
 
 
 def markdown(head, rows):
-    """A table; of a cell with a class its text alone."""
+    """Return a Markdown table; cells with a class become their text."""
     rows = [[one[0] if isinstance(one, tuple) else one for one in cells] for cells in rows]
     return "\n".join("| " + " | ".join(map(str, line)) + " |" for line in [head, ["---"] * len(head), *rows])
 
@@ -71,7 +71,9 @@ def marks(name, program):
 
 
 def put_between(path, name, parts, program=None):
-    """Puts parts between the two marks of that name, which the file has already; program: whose they are, if not the name's."""
+    """Replace the text between the two marks of that name; program: that of the marks, if not name. Raises ValueError without
+    the marks.
+    """
     begin, end = marks(name, program or name)
     whole = path.read_text(encoding="utf-8")
     if begin not in whole or end not in whole:

@@ -1,4 +1,4 @@
-"""Where the project, its library and its results are, and what a run was made with and on."""
+"""The places of the project, its library and its results; the machine and commit of a run."""
 
 import hashlib
 import os
@@ -9,9 +9,9 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[3]
 TOOLS = ROOT / "blender_tests" / "tools"
 BUILD = ROOT / "build"
-# The page with the tables of all programs, and the one for users.
+# The page with the tables of all programs, and the page for users.
 TABLES, README = ROOT / "blender_tests" / "README.md", ROOT / "README.md"
-# Vectors that renderers have kernels for, by the processor's flag, the widest first.
+# Instruction sets that renderers have kernels for, by the processor's flag, the widest first.
 _VECTORS = {"avx512vl": "AVX-512", "avx2": "AVX2"}
 
 
@@ -30,13 +30,13 @@ def machine():
             facts["processor"] += f" with {widest}" if widest else ""
             break
     facts["memory_gib"] = round(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 2**30, 1)
-    # What others have the machine do at the start falls on all figures.
+    # The load of other processes at the start affects all figures.
     facts["load"] = round(os.getloadavg()[0], 2)
     return facts
 
 
 def commit():
-    """Of the tree, with a + where files differ from it."""
+    """Return the commit of the tree, with a + if files differ from it."""
     name, changed = (
         subprocess.run(["git", *command], cwd=ROOT, capture_output=True, text=True).stdout.strip()
         for command in (("rev-parse", "--short", "HEAD"), ("status", "--porcelain"))
@@ -45,7 +45,7 @@ def commit():
 
 
 def header(quick):
-    """What stands in every program's record."""
+    """Return the fields that every program's record has."""
     return {"machine": machine(), "commit": commit(), "quick": quick}
 
 
@@ -54,7 +54,7 @@ def digest_of_file(path):
 
 
 def digest_of_files(paths):
-    """Of the names and contents of files of the project."""
+    """Return a digest of the names and contents of files of the project."""
     digest = hashlib.sha256()
     for path in sorted(paths):
         digest.update(str(path.relative_to(ROOT)).encode() + b"\0" + path.read_bytes())

@@ -1,4 +1,4 @@
-"""What a run is asked, and what it tells on the terminal."""
+"""The options of a run, and its output on the terminal."""
 
 import argparse
 import sys
@@ -10,7 +10,7 @@ from .places import BUILD, ROOT, TABLES
 
 
 def make_parser(text, *, quick, only="", threads=0, readme=False, output=""):
-    """A parser with --quick and, where something is given for them, --only, --threads, --readme, --output in build/."""
+    """Return a parser with --quick and, if their arguments are given, --only, --threads, --readme, and --output in build/."""
     made = argparse.ArgumentParser(description=text, formatter_class=argparse.RawDescriptionHelpFormatter)
     made.add_argument("--quick", action="store_true", help=quick)
     if only:
@@ -25,13 +25,13 @@ def make_parser(text, *, quick, only="", threads=0, readme=False, output=""):
 
 
 def wanted(only, *names):
-    """Whether one of the names matches one of the comma-separated patterns; without any, all do. Capitals are small letters."""
+    """Return whether a name matches one of the comma-separated patterns, ignoring case; without patterns, all match."""
     patterns = [pattern.strip().lower() for pattern in only.split(",") if pattern.strip()]
     return not patterns or any(fnmatchcase(name.lower(), pattern) for name in names for pattern in patterns)
 
 
 class Progress:
-    """Lines with the seconds since the start, and between them one that moves on a terminal and is left out of a log."""
+    """Prints lines with the seconds since the start, and on a terminal a line of progress that is overwritten."""
 
     def __init__(self, terminal=None):
         self.terminal = terminal or sys.stdout
@@ -39,12 +39,12 @@ class Progress:
         self.moves = self.terminal.isatty()
 
     def show(self, text):
-        """What is going on."""
+        """Show the progress."""
         if self.moves:
             self._write(f"\r\033[K{self._stamped(text)}")
 
     def __call__(self, text):
-        """What was measured."""
+        """Print a result."""
         self._write(f"{chr(13) + chr(27) + '[K' if self.moves else ''}{self._stamped(text)}\n")
 
     def _stamped(self, text):

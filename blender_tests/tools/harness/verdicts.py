@@ -1,4 +1,4 @@
-"""Goals, each with what a run measured: for the terminal, the page and the tables."""
+"""Goals, each with its measurement in a run: for the terminal, the page and the tables."""
 
 from dataclasses import asdict, dataclass
 
@@ -21,18 +21,18 @@ HEAD = ["goal", "asked", "measured", ""]
 
 
 def words(reached, open_=NOT_MEASURED):
-    """A cell of a page; open_: what None says."""
+    """Return a cell of a page; open_: the word for None."""
     word, kind = _WORDS[reached]
     return (open_ if reached is None else word), kind
 
 
 def row(goal):
-    """The cells of a goal on a page; goal: as_dict of a Verdict."""
+    """Return the cells of a goal on a page; goal: as_dict of a Verdict."""
     return [goal["what"], goal["goal"], goal["measured"], words(goal["reached"])]
 
 
 def plain_row(goal):
-    """The cells of a goal in a table of Markdown, which leaves out what is not measured."""
+    """Return the cells of a goal in a table of Markdown."""
     return [*row(goal)[:3], words(goal["reached"], "")[0]]
 
 

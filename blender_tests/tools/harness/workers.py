@@ -1,4 +1,4 @@
-"""Measurements in processes of their own: who asks, and what answers, as JSON in the last line that it prints."""
+"""Measurements in their own processes: the caller, and the worker, which prints its answer as JSON in its last line."""
 
 import json
 import os
@@ -9,16 +9,16 @@ from pathlib import Path
 from .places import ROOT, TOOLS
 
 START = TOOLS / "start.py"
-# Seconds after which a measurement counts as failed: some peers take hours over some scenes.
+# Seconds after which a measurement counts as failed: some renderers take hours for some scenes.
 LONGEST = 900.0
 
 
 class Failed(Exception):
-    """What a measurement said last."""
+    """A measurement failed; the text is its last line."""
 
 
 def run(command, root=ROOT, environment=None, limit=None):
-    """The JSON that a measuring process prints as its last line; limit: seconds, LONGEST where not given."""
+    """Return the JSON that a measuring process prints as its last line; raises Failed. limit: seconds, by default LONGEST."""
     settings = {"cwd": root, "capture_output": True, "text": True, "env": {**os.environ, **(environment or {})}}
     try:
         result = subprocess.run([str(word) for word in command], timeout=limit or LONGEST, **settings)
@@ -32,19 +32,19 @@ def run(command, root=ROOT, environment=None, limit=None):
 
 
 def ask(module, task, /, limit=None, environment=None, **arguments):
-    """The answer of a task of a module of tools: of one that calls answer."""
+    """Return the answer of a task of a module of tools that calls answer(); raises Failed."""
     return run([sys.executable, START, module, task, json.dumps(arguments)], environment=environment, limit=limit)
 
 
 def build(*command):
-    """Runs a compiler, silent where it goes well."""
+    """Run a compiler; raises Failed with the last line of its errors."""
     result = subprocess.run([str(word) for word in command], cwd=ROOT, capture_output=True, text=True)
     if result.returncode:
         raise Failed((result.stderr or result.stdout or f"{command[0]} failed").strip().splitlines()[-1][:300])
 
 
 def memory(field):
-    """A figure of this process in bytes: VmRSS now, or VmHWM, the peak since reset_peak."""
+    """Return a figure of this process in bytes: VmRSS now, or VmHWM, the peak since reset_peak."""
     for line in Path("/proc/self/status").read_text().splitlines():
         if line.startswith(field + ":"):
             return 1024 * int(line.split()[1])
@@ -56,7 +56,7 @@ def reset_peak():
 
 
 def answer(*tasks):
-    """Runs the task that the command line names with its JSON, and prints the JSON that it returns as the last line."""
+    """Run the task that the command line names with its JSON, and print its result as JSON in the last line."""
     by_name = {task.__name__: task for task in tasks}
     result = by_name[sys.argv[1]](**json.loads(sys.argv[2]))
     sys.stdout.flush()
@@ -64,7 +64,7 @@ def answer(*tasks):
 
 
 def leave():
-    """Ends the process at once: some libraries abort where Python takes them apart."""
+    """End the process at once: some libraries abort when Python unloads them."""
     sys.stdout.flush()
     sys.stderr.flush()
     os._exit(0)

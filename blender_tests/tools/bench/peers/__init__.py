@@ -1,13 +1,13 @@
 """Adapters: the snapshot of a scene for each of the other renderers.
 
-A module of this folder that renders offers
+Each module of this folder that renders has
 
-    check(snapshot)                     raises Cannot where the renderer has no equal for what the scene holds
-    version()                           of the renderer, as text; fails where it is not installed
+    check(snapshot)                     raises Cannot if the renderer has no equivalent of a feature of the scene
+    version()                           returns the renderer's version as text; fails if it is not installed
     Renderer(snapshot, threads, option) loads the scene
-        .render(samples, seed)          (picture (height, width, 3) linear with row 0 below, seconds, which clock)
+        .render(samples, seed)          returns (linear picture (height, width, 3), row 0 at the bottom; seconds; which clock)
 """
 
 
 class Cannot(Exception):
-    """What the adapter cannot express, as the end of a sentence."""
+    """The feature that the adapter cannot express, as the end of a sentence."""

@@ -1,4 +1,4 @@
-"""Meshes of a snapshot as vertex arrays of one material each, and where they stand."""
+"""Meshes of a snapshot as vertex arrays of one material each, and their places."""
 
 from collections import defaultdict
 from dataclasses import dataclass
@@ -9,21 +9,21 @@ from addon.bindings.enums import InstanceKind, Shading
 
 from . import Cannot
 
-# Copies of one mesh are baked into the world as long as all together have no more triangles than this.
+# Copies of one mesh are baked into world space if all together have at most this many triangles.
 _MOST_BAKED = 2_000_000
 
 
 @dataclass(frozen=True)
 class Part:
-    """Faces of one material: vertex arrays that one index serves."""
+    """Faces of one material: vertex arrays with common indices."""
 
     positions: np.ndarray  # (V, 3)
     triangles: np.ndarray  # (T, 3)
-    normals: np.ndarray | None  # (V, 3), or flat faces
+    normals: np.ndarray | None  # (V, 3); None: flat faces
     uvs: np.ndarray | None  # (V, 2)
 
     def placed(self, matrix):
-        """The same in the world; a mirroring matrix keeps the faces' outside."""
+        """Return the part in world space; the front side of faces stays outside under a mirroring matrix."""
         linear = matrix[:, :3]
         positions = self.positions @ linear.T + matrix[:, 3]
         triangles = self.triangles if np.linalg.det(linear) > 0 else self.triangles[:, ::-1]
@@ -36,7 +36,7 @@ class Part:
 
 @dataclass(frozen=True)
 class Placed:
-    """One part with its material in one or many places; kind is MESH, or an exact surface without part."""
+    """One part with its material in one or more places; kind is MESH, or that of an exact shape, which has no part."""
 
     name: str
     kind: int
@@ -46,7 +46,7 @@ class Placed:
 
 
 def placements(snapshot):
-    """All that can be seen, a Placed for each part of a mesh and each material that it is used with."""
+    """Return everything visible, a Placed for each part of a mesh and each material that it is used with."""
     table, groups = snapshot.instances, defaultdict(list)
     for index in range(len(table)):
         if table.hidden_from[index] or table.flags[index]:
@@ -82,7 +82,7 @@ def _part(mesh, chosen, flat):
     normals = None if flat else mesh.normals
     if mesh.uvs is None and (normals is None or normals.ndim == 2):
         return _compact(Part(mesh.positions, triangles, normals, None))
-    # What differs from corner to corner needs a vertex for each corner that differs.
+    # Corners of one vertex with different attributes become different vertices.
     corners = triangles.ravel()
     columns = [mesh.positions[corners]]
     if normals is not None:
@@ -102,7 +102,7 @@ def _part(mesh, chosen, flat):
 
 
 def _compact(part):
-    """Without the vertices that no face uses."""
+    """Return the part without the vertices that no face uses."""
     used, triangles = np.unique(part.triangles, return_inverse=True)
     if len(used) == len(part.positions):
         return part

@@ -15,7 +15,7 @@ from .view import read_view
 
 _POLL = 0.01
 _SUN_CORNERS, _SUN_DISTANCE = 64, 1e4
-# Its environment maps begin at +x and go on to +y; Blender's begin at -x, and go the same way round seen from below.
+# LuxCore's environment maps begin at +x and continue to +y; Blender's begin at -x and turn the other way.
 _ENVIRONMENT = np.diag([-1.0, 1.0, 1.0])
 _VERTEX = ("x", "y", "z", "nx", "ny", "nz", "s", "t")
 
@@ -81,7 +81,7 @@ class Renderer:
             "film.outputs.0.type": "RGB",
             "film.outputs.0.filename": "picture.exr",
             "batch.haltspp": samples,
-            # Its depth counts the light at the last vertex.
+            # LuxCore's depth counts the light at the last vertex, too.
             "path.pathdepth.total": self.snapshot.settings.max_bounces + 1,
             "path.pathdepth.diffuse": self.snapshot.settings.max_bounces + 1,
             "path.pathdepth.glossy": self.snapshot.settings.max_bounces + 1,
@@ -94,7 +94,7 @@ class Renderer:
         session = self.lux.RenderSession(self.lux.RenderConfig(properties, self.scene))
         session.Start()
         started = time.perf_counter()
-        # It offers no call that waits.
+        # LuxCore has no call that waits.
         while not session.HasDone():
             time.sleep(_POLL)
             session.UpdateStats()
@@ -117,7 +117,7 @@ class Renderer:
         self._set("camera.lookat.orig", view.origin.tolist())
         self._set("camera.lookat.target", (view.origin + view.forward).tolist())
         self._set("camera.up", view.up.tolist())
-        # At 90 degrees the window is the one at distance 1. Its rows lie one lower than those of other renderers.
+        # At 90 degrees the window is the one at distance 1. LuxCore's rows are one lower than those of other renderers.
         left, right, bottom, top = view.window
         row = (top - bottom) / view.height
         self._set("camera.fieldofview", 90.0)
@@ -148,7 +148,7 @@ class Renderer:
         self.scene.DefineImageMap(name, rows, 1.0, channels, width, height)
 
     def _color(self, owner, color):
-        """Three numbers, or the name of a texture that is made for owner."""
+        """Return three numbers, or the name of a texture that is created for owner."""
         if not isinstance(color, Texture):
             return [float(channel) for channel in color]
         self._image(f"{owner}_map", texels(self.snapshot.images[color.image])[..., :3])
@@ -171,7 +171,7 @@ class Renderer:
                 "basecolor": color,
                 "metallic": surface.metallic,
                 "roughness": surface.roughness,
-                # Its specular of 1 reflects 8 %.
+                # LuxCore's specular of 1 reflects 8 %.
                 "specular": ((surface.ior - 1.0) / (surface.ior + 1.0)) ** 2 / 0.08,
             },
         }
@@ -210,7 +210,7 @@ class Renderer:
         if light.kind == LightKind.POINT:
             self._set(f"lights.{name}.type", "sphere" if light.radius > 0.0 else "point")
             self._set(f"lights.{name}.position", light.matrix[:, 3].tolist())
-            # Its colour is what all directions of the sphere share.
+            # LuxCore divides the colour by all directions of the sphere.
             self._set(f"lights.{name}.color", (4.0 * np.pi * emission).tolist())
             if light.radius > 0.0:
                 self._set(f"lights.{name}.radius", light.radius)
@@ -222,7 +222,7 @@ class Renderer:
             self._set(f"lights.{name}.color", emission.tolist())
             return
         if light.kind == LightKind.SUN:
-            # Its own suns are not met by reflected rays: a disk of many corners far away stands in.
+            # Reflected rays do not hit LuxCore's suns: a distant disk of many corners replaces them.
             half = 0.5 * light.sun_angle
             turn = np.linspace(0.0, 2.0 * np.pi, _SUN_CORNERS, endpoint=False)[:, None]
             radius = _SUN_DISTANCE * np.tan(half)
@@ -231,13 +231,13 @@ class Renderer:
             faces = np.stack([np.zeros_like(fan), fan, fan + 1], axis=1)
             self._lamp(name, emission / (np.pi * np.sin(half) ** 2), rim, faces)
             return
-        # A lamp's rectangle, which shines along -z.
+        # A lamp's rectangle, which emits along -z.
         x, y = 0.5 * light.size[0] * axes[:, 0], 0.5 * light.size[1] * axes[:, 1]
         corners = light.matrix[:, 3] + np.array([-x - y, -x + y, x + y, x - y])
         self._lamp(name, emission, corners, np.array([[0, 1, 2], [0, 2, 3]]))
 
     def _lamp(self, name, radiance, corners, faces):
-        """A black, shining thing that the camera does not see."""
+        """Add a black emissive mesh that is hidden from the camera."""
         self._set(f"materials.{name}.type", "matte")
         self._set(f"materials.{name}.kd", [0.0, 0.0, 0.0])
         self._emit(name, radiance)
@@ -246,7 +246,7 @@ class Renderer:
 
 
 def _columns(matrix):
-    """Sixteen numbers, column by column."""
+    """Return sixteen numbers, column by column."""
     full = np.eye(4)
     full[: matrix.shape[0], : matrix.shape[1]] = matrix
     return [float(value) for value in full.T.ravel()]

@@ -13,16 +13,16 @@ from .geometry import is_baked, placements
 from .plain import Texture, is_black, read_surface, read_world, texels
 from .view import read_view
 
-# Lanes that one launch may have: what a launch keeps in memory grows with them.
+# Most lanes of one launch: its memory grows with them.
 _MOST_LANES = 1 << 24
 _BLACK = {"type": "diffuse", "reflectance": {"type": "rgb", "value": 0.0}}
-# Its environment maps have +y above and +z in the middle column; Blender's +z, and +x.
+# Mitsuba's environment maps have +y at the top and +z in the middle column; Blender's have +z and +x.
 _ENVIRONMENT = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 
 
 def _load(variant):
     if variant.startswith("llvm") and "DRJIT_LIBLLVM_PATH" not in os.environ:
-        # Other releases than 19 compile, and fail on processors that they do not know.
+        # Other releases than 19 compile, but fail on processors that they do not know.
         found = glob.glob("/usr/lib/*/libLLVM.so.19.1") or glob.glob("/usr/lib/*/libLLVM-19.so")
         if not found:
             raise RuntimeError("LLVM 19 is missing (Debian's package libllvm19)")
@@ -34,7 +34,7 @@ def _load(variant):
 
 
 def version(variant="scalar_rgb"):
-    """Of the package; renders one pixel, so that a back end that does not work is found here."""
+    """Return the package's version; render one pixel, so that a back end that does not work fails here."""
     mitsuba = _load(variant)
     scene = {"type": "scene", "light": {"type": "constant"}, "sensor": {"type": "perspective"}}
     scene["sensor"]["film"] = {"type": "hdrfilm", "width": 1, "height": 1}
@@ -78,7 +78,7 @@ class Renderer:
         while left:
             count = min(left, most)
             started = time.perf_counter()
-            # Launches of one picture differ by their seed, and pictures by far more than they have launches.
+            # The launches of one picture have consecutive seeds; those of two pictures are much farther apart.
             picture = self.mitsuba.render(self.scene, spp=count, seed=1000 * seed + (samples - left) // most)
             if self.vectorised:
                 self.drjit.eval(picture)
@@ -107,16 +107,16 @@ class Renderer:
         return scene
 
     def _integrator(self):
-        # Of its integrators this one alone lets shadow rays through what is cut out.
+        # Of Mitsuba's integrators only this one lets shadow rays pass through cut-out surfaces.
         kind = "volpath" if any(surface.cut_out for surface in self.surfaces) else "path"
         # Hiding lamps hides the world, too.
         hide = read_world(self.snapshot.world) == ((0.0, 0.0, 0.0), None)
-        # Its depth counts the camera's ray, and the light at the last vertex.
+        # Mitsuba's depth counts the camera ray, and the light at the last vertex.
         return {"type": kind, "max_depth": self.snapshot.settings.max_bounces + 2, "hide_emitters": hide}
 
     def _sensor(self):
         view = read_view(self.snapshot.camera)
-        # Its cameras look along +z and have +x on the left.
+        # Mitsuba's cameras look along +z and have +x on the left.
         matrix = np.eye(4)
         matrix[:3, 0], matrix[:3, 1], matrix[:3, 2], matrix[:3, 3] = -view.right, view.up, view.forward, view.origin
         return {
@@ -151,7 +151,7 @@ class Renderer:
         return self._bitmap(texels(self.snapshot.images[color.image])[..., :3])
 
     def _bitmap(self, values):
-        # Its v = 0 is the first row that is stored.
+        # Mitsuba's v = 0 is the first stored row.
         bitmap = self.mitsuba.Bitmap(np.ascontiguousarray(values, np.float32))
         return {"type": "bitmap", "bitmap": bitmap, "raw": True, "wrap_mode": "repeat"}
 
@@ -238,7 +238,7 @@ class Renderer:
         if light.kind == LightKind.AREA:
             if light.spread < np.pi:
                 raise Cannot(f"{name} has a spread")
-            # Lamps shine along -z, its rectangles and disks along +z.
+            # Lamps emit along -z, Mitsuba's rectangles and disks along +z.
             matrix = frame @ np.diag([0.5 * light.size[0], -0.5 * light.size[1], -1.0, 1.0])
             shape = "disk" if light.shape == AreaShape.ELLIPSE else "rectangle"
             glow = {"type": "area", "radiance": self._rgb(emission)}
@@ -246,7 +246,7 @@ class Renderer:
         raise Cannot(f"{name} has no equal")
 
     def _sun(self, light, axes):
-        """A disk far away, of the sun's width; its irradiance is radiance times pi sin^2 of half its angle."""
+        """Return a distant disk of the sun's angle; its irradiance is its radiance times pi sin^2 of half the angle."""
         distance, half = 1e5, 0.5 * light.sun_angle
         matrix = np.eye(4)
         matrix[:3, :3] = axes @ np.diag([1.0, -1.0, -1.0]) * (distance * np.tan(half))

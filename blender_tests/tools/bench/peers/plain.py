@@ -1,4 +1,4 @@
-"""Materials, textures and the world of a snapshot in the few words that all renderers share."""
+"""Materials, textures and the world of a snapshot, reduced to the models that all renderers share."""
 
 from dataclasses import dataclass
 
@@ -23,7 +23,7 @@ _IDENTITY = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 
 @dataclass(frozen=True)
 class Texture:
-    """An image laid out by the mesh's UV map, repeated."""
+    """An image at the mesh's UV coordinates, repeated."""
 
     image: int
 
@@ -39,12 +39,12 @@ class Surface:
     ior: float = 1.5
     transmission: float = 0.0
     emission: tuple = (0.0, 0.0, 0.0)
-    cut_out: Texture | None = None  # its alpha lets light through
+    cut_out: Texture | None = None  # where its alpha is below 1, light passes through
     specular: tuple = (0.0, 0.0, 0.0)  # Ks of the course's model
 
 
 def read_surface(material):
-    """The one lobe of a material that stands alone, as a Surface."""
+    """Return a material of a single lobe as a Surface; raises Cannot for all others."""
     who = f"material '{material.name}'"
     if any(_number(value, who) != 0.0 for value in (material.holdout,)) or material.displacement != (0.0, 0.0, 0.0):
         raise Cannot(f"{who} is a holdout or displaced")
@@ -100,13 +100,13 @@ def _principled(values, material, who, common):
 
 
 def _course(material, who):
-    """Kd and Ks of the course: a Lambert lobe beside those that shine."""
+    """Return Kd and Ks of the course: a Lambert lobe, and the specular lobes."""
     kinds = {lobe.kind for lobe in material.lobes}
     matt = [lobe for lobe in material.lobes if lobe.kind == LobeKind.LAMBERT]
     shiny = [lobe for lobe in material.lobes if lobe.kind == LobeKind.BECKMANN]
     if not kinds <= {LobeKind.LAMBERT, LobeKind.BECKMANN, LobeKind.MIRROR} or len(matt) != 1 or len(shiny) != 1:
         raise Cannot(f"{who} mixes {len(material.lobes)} lobes")
-    # The course's roughness is alpha itself.
+    # The course's roughness is alpha, not its square root.
     roughness = _number(shiny[0].roughness, who) ** 0.5
     ior = _number(shiny[0].ior, who)
     return Surface("course", matt[0].color, roughness=roughness, ior=ior, specular=shiny[0].color)
@@ -138,7 +138,7 @@ def _texture(number, nodes, who):
 
 
 def _cut_out(material, who):
-    """The texture whose alpha cuts the surface out: what passes is one less its alpha."""
+    """Return the texture whose alpha cuts out the surface: transparency is 1 - alpha."""
     passed = material.transmittance
     if not isinstance(passed, NodeRef):
         if set(passed) != {0.0}:
@@ -154,7 +154,7 @@ def _cut_out(material, who):
 
 
 def read_world(world):
-    """(radiance, None), or (None, image number) of an equirectangular picture that stands as Blender has it."""
+    """Return (radiance, None), or (None, image number) of an equirectangular image without rotation."""
     if world.hidden_from:
         raise Cannot("the world is hidden from some rays")
     if not isinstance(world.radiance, NodeRef):
@@ -168,7 +168,7 @@ def read_world(world):
 
 
 def texels(image):
-    """(height, width, channels) linear floats; row 0 is the lowest."""
+    """Return linear floats (height, width, channels); row 0 is the bottom row."""
     values = image.texels.astype(np.float32)
     if image.texels.dtype != np.float32:
         values /= float(np.iinfo(image.texels.dtype).max)

@@ -1,4 +1,4 @@
-"""The camera of a snapshot in the words of the other renderers."""
+"""The camera of a snapshot in the parameters of the other renderers."""
 
 import math
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from . import Cannot
 
 @dataclass(frozen=True)
 class View:
-    """A pinhole: where it stands, three unit vectors, and the window at distance 1 as left, right, bottom, top."""
+    """A pinhole camera: its place, three unit vectors, and the window at distance 1 as left, right, bottom, top."""
 
     origin: np.ndarray
     right: np.ndarray
@@ -24,11 +24,13 @@ class View:
 
     @property
     def horizontal_angle(self):
-        """Of a window that lies evenly about the axis, in degrees."""
+        """Return the horizontal angle of view in degrees; the window must be symmetric about the axis."""
         return 2.0 * math.degrees(math.atan(self.window[1]))
 
     def direction(self, x, y):
-        """Through the point (x, y) of the picture, each from 0 to 1 from its lower left corner; not of unit length."""
+        """Return the direction, not normalised, through a point of the picture; x and y are 0 at the lower left corner, and 1
+        at the upper right one.
+        """
         left, right, bottom, top = self.window
         return self.forward + (left + x * (right - left)) * self.right + (bottom + y * (top - bottom)) * self.up
 
@@ -43,7 +45,7 @@ def read_view(camera):
     left, right, bottom, top = camera.window
     if abs(left + right) > 1e-6 * (right - left) or abs(bottom + top) > 1e-6 * (top - bottom):
         raise Cannot("the camera is shifted")
-    # Renderers take square pixels from the picture's size, so the window must have its shape.
+    # The renderers assume square pixels, so the window must have the picture's aspect ratio.
     if abs((right - left) * camera.height - (top - bottom) * camera.width) > 1e-5 * (right - left) * camera.height:
         raise Cannot("pixels are not square")
     matrix = camera.matrix
