@@ -1,4 +1,4 @@
-"""start.py MODULE ARGUMENTS: runs a module of tools, as bench.run, where it finds the project, helpers of tests and bindings.
+"""start.py MODULE ARGUMENTS: run a module of tools, such as bench.run, with the project, test helpers and bindings on its path.
 
 Runs under a Python that has bpy, and inside Blender: blender -b --factory-startup -P start.py -- MODULE ARGUMENTS
 """
@@ -9,7 +9,7 @@ from pathlib import Path
 
 TESTS = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(TESTS.parent), str(TESTS), str(TESTS / "helpers")]
-# `import bindings` is the add-on's own package, reached without the add-on's top; after all else, for what else is there.
+# `import bindings` imports the add-on's package without the add-on. The folder comes last, since it has other packages, too.
 sys.path.append(str(TESTS.parent / "addon"))
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""What `make accuracy` says of a bias: which blocks stand out, and how far they are off."""
+"""Biases in `make accuracy`: the blocks beyond chance, and their relative biases."""
 
 import numpy as np
 import pytest
@@ -8,20 +8,20 @@ from tools.harness.errors import Reference
 
 
 def pictures(random, count, left):
-    """Two blocks: one of luminance left, one of 3; noise of a thousandth."""
+    """Return pictures of two blocks: one of luminance left, one of 3; noise of a thousandth."""
     level = np.repeat([[left] * 16 + [3.0] * 16], 16, axis=0)
     return level + 1e-3 * random.standard_normal((count, 16, 32))
 
 
 @pytest.fixture
 def bias():
-    """The left block is 1.1 where the truth is 1."""
+    """Return the bias of pictures whose left block is 1.1, where the truth is 1."""
     random = np.random.default_rng(1)
     return figures.bias(pictures(random, 8, 1.1), Reference(pictures(random, 8, 1.0)))
 
 
 def test_blocks_are_off_as_errors_are_told(bias):
-    """0.1 over 1 and a hundredth of the mean, which is 2. The mean of 8 x 256 numbers is known to 2e-5 on each side."""
+    """The bias is 0.1 over 1 plus a hundredth of the mean, which is 2. The mean of 8 x 256 numbers has an error of 2e-5."""
     assert bias["off"] == pytest.approx([0.1 / 1.02, 0.0], abs=1e-4)
     assert bias["blocks"][0] > 4.0 > abs(bias["blocks"][1])
 

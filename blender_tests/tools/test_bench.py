@@ -42,7 +42,7 @@ def test_goals_name_every_row_and_what_is_not_measured():
 
 
 def test_goals_of_several_figures_need_them_all():
-    """One that is missed decides; one that is missing leaves it open."""
+    """A missed figure decides; a missing figure leaves the goal open."""
     figures = {"instances": {"total_seconds": {"median": 0.5}}}
     row = "20 000 instances x 15 744 triangles: export, upload and build"
 
@@ -142,16 +142,16 @@ def test_tables_replace_what_is_between_the_marks(tmp_path):
     assert text.startswith("before\n") and text.endswith("after\n") and "old" not in text
     assert "LuxCore (no wheel)" in text and text.count("Commit abc.") == 1
     assert "| samples/s against Cycles | 3.5x in geometric mean | 2.00x, least 1.00x (two), 2 scenes | missed |" in text
-    # A head, a line below it and eight ratios; scenes stand on the page alone.
+    # A head, a line below it and eight ratios; only the page has the scenes.
     assert sum(line.startswith("|") for line in text.splitlines()) == 10 and "a scene" not in text
-    # Users see the scenes on which both renderers were timed.
+    # The table for users has the scenes on which both renderers were timed.
     text = readme.read_text()
     assert text.startswith("before\n") and text.endswith("after\n") and "old" not in text
     assert "| a scene | 4.00 | 1.00 |" in text and "Mitsuba" not in text and "no peers" not in text
 
 
 def test_roofline_is_the_clock_over_the_cycles_of_a_ray():
-    """15.4 nodes and 4 blocks are 257.4 cycles: 11.4 million rays a second of a core at 2.93 GHz."""
+    """15.4 nodes and 4 blocks take 257.4 cycles: 11.4 million rays per second of a core at 2.93 GHz."""
     assert rays.bound(15.4, 4.0, 2.93e9, 1) == pytest.approx(2.93e9 / 257.4)
     traced = {"lancer": {"diffuse": {"median": 5e6}}, "counts": {"diffuse": {"nodes": 15.4, "leaves": 4.0}}}
     (row,) = rays.roofline({"clock": 2.93e9}, traced, 2)

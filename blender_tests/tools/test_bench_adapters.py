@@ -1,4 +1,4 @@
-"""What adapters of the benchmark make of a snapshot, without the renderers that they are for."""
+"""The benchmark's adapters convert snapshots; their renderers are not needed."""
 
 import bpy
 import numpy as np
@@ -27,7 +27,7 @@ def _snapshot(name):
 
 @pytest.mark.parametrize("name", ["triangle", "room"])
 def test_view_gives_the_cameras_own_rays(name):
-    """Through the corners of the picture, as Blender draws the camera's frame."""
+    """The rays through the corners of the picture meet the camera's frame as Blender draws it."""
     snapshot = _snapshot(name)
     found = view.read_view(snapshot.camera)
     for axis in (found.right, found.up, found.forward):
@@ -39,7 +39,7 @@ def test_view_gives_the_cameras_own_rays(name):
     for corner, (x, y) in zip(frame, [(1, 1), (1, 0), (0, 0), (0, 1)], strict=True):
         seen = np.array(corner) - found.origin
         ours = found.direction(x, y)
-        # Blender's matrices are of single precision, 2^-24, here some ten operations deep.
+        # Blender's matrices have single precision, 2^-24, here after some ten operations.
         assert ours / np.linalg.norm(ours) == pytest.approx(seen / np.linalg.norm(seen), abs=1e-6)
 
 
@@ -82,12 +82,12 @@ def test_materials_that_others_have_not():
 
 def test_texels_are_linear():
     image = Image("grey", np.full((1, 1, 4), 188, np.uint8), transfer=Transfer.SRGB, alpha=AlphaMode.STRAIGHT)
-    # sRGB's curve at 188/255, which is near a half; alpha keeps its value.
+    # sRGB's curve at 188/255 is near a half; alpha is linear.
     assert plain.texels(image)[0, 0] == pytest.approx([0.5029] * 3 + [188 / 255], abs=1e-4)
 
 
 def _corners_differ():
-    """Two triangles that share an edge, smooth at one corner of it and sharp at the other."""
+    """Return two triangles that share an edge, smooth at one end of it and sharp at the other."""
     positions = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 1)]
     normals = np.zeros((2, 3, 3), np.float32)
     normals[..., 2] = 1.0
@@ -98,14 +98,14 @@ def _corners_differ():
 def test_corners_become_vertices_where_they_differ():
     (slot, part), *others = geometry._parts(_corners_differ(), flat=False)
     assert (slot, others) == (0, [])
-    # Four places, of which one has two normals.
+    # Four positions, one of them with two normals.
     assert len(part.positions) == 5
     assert part.positions[part.triangles] == pytest.approx(_corners_differ().positions[_corners_differ().triangles])
     assert part.normals[part.triangles] == pytest.approx(_corners_differ().normals)
 
 
 def test_placed_parts_stand_where_instances_do():
-    """Baked triangles are met where the library meets the instance, in a mirrored and sheared place too."""
+    """Baked triangles lie where the library hits the instance, also under mirroring and shearing."""
     matrix = np.array([[-2.0, 0.3, 0.0, 1.0], [0.0, 1.0, 0.5, -2.0], [0.0, 0.0, 3.0, 0.5]])
     table = InstanceTable.build([Instance(matrix=matrix, shading=Shading.FLAT)])
     snapshot = SceneSnapshot(meshes=(_corners_differ(),), instances=table, materials=(Material(),))
@@ -118,9 +118,9 @@ def test_placed_parts_stand_where_instances_do():
             normal, middle = np.cross(b - a, c - a), (a + b + c) / 3
             normal /= np.linalg.norm(normal)
             hit = scene.intersect([middle + normal], [-normal])[0]
-            # Positions are of single precision: a unit away, t is off by some 2^-24 of coordinates below 8.
+            # Positions have single precision: at a distance of 1, t has an error of some 2^-24 of coordinates below 8.
             assert hit.t == pytest.approx(1.0, abs=1e-5)
-            # The outside stays outside.
+            # The front side stays outside.
             assert hit.geometric_normal @ normal == pytest.approx(1.0, abs=1e-5)
 
 

@@ -1,4 +1,4 @@
-"""`make corpus` without Blender: what it makes of two engines' pictures and failures, its ranking, page, README, resumption."""
+"""`make corpus` without Blender: verdicts on two engines' pictures and failures, ranking, page, README, resumption."""
 
 import argparse
 import dataclasses
@@ -17,7 +17,7 @@ PLAN = measure.Plan(budget=1.0, rounds=2, most=16)
 
 
 class Engine:
-    """In place of a worker: pictures of a constant and noise, or an end."""
+    """Replaces a worker: renders pictures of a constant and noise, or ends."""
 
     def __init__(self, engine, levels, spread=0.0, missing=None, ends=None, seconds=0.001):
         self.engine, self.level, self.spread, self.missing = engine, levels[engine], spread, missing or {}
@@ -46,7 +46,7 @@ class Engine:
 
 
 def measured(folder, ours=1.0, theirs=1.0, missing_file="", **fields):
-    """(row, the engines that ran)"""
+    """Return (row, the engines that ran)."""
     file = sources.File("some/thing.blend", None if missing_file else folder / "thing.blend", "plot", "", missing_file)
     engines = []
 
@@ -63,7 +63,7 @@ def measured(folder, ours=1.0, theirs=1.0, missing_file="", **fields):
         ({}, "equal", "mean 0.00%"),
         ({"ours": 1.2}, "untold", "mean 20.00%"),
         ({"ours": 1.2, "missing": {"node:Toon BSDF": 2}}, "told", "mean 20.00%"),
-        # What is missing is no difference where it does not show.
+        # A missing feature that does not change the picture is no difference.
         ({"missing": {"node:Toon BSDF": 2}}, "equal", "mean 0.00%"),
         ({"ours": 1.02, "spread": 5.0}, "noise", "noise"),
         ({"ours": 0.0, "theirs": 0.0}, "black", "both pictures are black"),
@@ -83,7 +83,7 @@ def test_verdicts(tmp_path, fields, verdict, words):
 
 
 def test_large_squares_find_what_noise_hides_in_small_ones():
-    """A tenth less of all light, under noise of a fifth in each square of 8 x 8 pixels."""
+    """All light is a tenth darker, under noise of a fifth in each square of 8 x 8 pixels."""
     source = np.random.default_rng(7)
     ours, theirs = (level + 1.6 * source.standard_normal((2, 160, 320, 4)) for level in (0.9, 1.0))
     limit, parts = measure.KIND.limit, measure._parts(ours, theirs)
@@ -101,7 +101,7 @@ def test_both_engines_render_the_same_by_turns(tmp_path):
 
 
 def test_a_silent_difference_is_looked_at_again(tmp_path):
-    """With other seeds and more samples; what is told needs no second look."""
+    """It is rendered again with other seeds and more samples; a difference with a message is not."""
     row, engines = measured(tmp_path, ours=1.2, seconds=0.1)
     samples = [request["samples"] for task, request in engines[0].asked if task == "render"]
     assert samples[1:] == [4, 4, 16, 16] and row["samples"] == 16 and "first_look" in row
@@ -115,7 +115,7 @@ def test_a_picture_without_noise_counts_for_no_speed(tmp_path):
 
 
 def test_samples_follow_the_budget(tmp_path):
-    """Set-ups of half a second leave 0.4 s for two rounds of both engines: 16 samples of 5 ms."""
+    """Two rounds of both engines with set-ups of half a second have 0.4 s left: 16 samples of 5 ms."""
     row, _ = measured(tmp_path, seconds=0.005)
     assert row["samples"] == 16
     row, _ = measured(tmp_path, seconds=0.1)
@@ -123,7 +123,7 @@ def test_samples_follow_the_budget(tmp_path):
 
 
 def test_figures_are_lancers_over_cycles():
-    """Twice the noise is four times the variance, whatever the level; the hundredth with fireflies is left out."""
+    """Twice the noise is four times the variance, at any level; the hundredth of the pixels with fireflies is left out."""
     source = np.random.default_rng(5)
     level = 10.0 ** source.uniform(-1, 1, (1, 64, 96, 1))
     ours, theirs = (level * (1.0 + spread * source.standard_normal((4, 64, 96, 3))) for spread in (0.02, 0.01))
@@ -161,7 +161,7 @@ ROWS = [
 
 
 def test_what_is_missing_is_ranked_by_the_files_that_it_completes():
-    """noise makes b and e right; then hair or wave one each, of which both are in two files more; fog comes last."""
+    """Noise makes b and e right; then hair and wave make one file right each, and two more files have both; fog comes last."""
     ranked = verdicts.rank(ROWS)
     assert [(item["key"], item["completes"], item["total"]) for item in ranked] == [
         ("noise", 2, 2),
@@ -169,7 +169,7 @@ def test_what_is_missing_is_ranked_by_the_files_that_it_completes():
         ("wave", 1, 4),
         ("fog", 1, 5),
     ]
-    # Files that are right anyway have it too.
+    # Files that are right have the feature, too.
     assert ranked[3]["files"] == 2 and ranked[0]["uses"] == 6
 
 
@@ -199,7 +199,7 @@ def test_the_page_has_every_row_and_asks_no_network(tmp_path):
         assert f">{item['name']}<br>" in text and f"{item['name']} &lt;says&gt;" in text
         assert all(f"Lancer: {message}" in text for message in item["messages"])
     assert text.count("<tr data-verdict=") == len(ROWS)
-    # The faults stand first.
+    # The faults come first.
     order = [text.index(f'<tr data-verdict="{verdict}"') for verdict in ("untold", "failed", "told", "equal")]
     assert order == sorted(order)
     assert "http" not in text and json.loads((tmp_path / "corpus.json").read_text())["files"][0]["name"] == "a"
@@ -218,7 +218,7 @@ def test_the_summary_has_date_commit_counts_and_means(tmp_path):
         "| files with equal pictures | 1 | 2.00x | 0.50x | 4.00x | 4.00x |",
     ):
         assert words in text, words
-    # The page has every file and what is missing; of the tables the README has one, of two rows.
+    # The page has every file and the missing features; the README has one of the tables, of two rows.
     assert sum(line.startswith("|") for line in text.splitlines()) == 4 and "noise" not in text
 
 
@@ -228,7 +228,7 @@ def arguments(folder):
 
 
 def test_a_run_goes_on_where_it_ended(tmp_path, monkeypatch, capsys):
-    """What was measured is kept while file and settings are the same; what is not there is asked anew."""
+    """Figures are kept while file and settings stay the same; a missing file is looked for again."""
     measured = []
 
     class Counted:
@@ -286,7 +286,7 @@ def test_files_of_a_folder(tmp_path):
 
 @pytest.fixture
 def clone(tmp_path):
-    """A bare clone of one repository with two commits; (folder of clones, first commit, second)."""
+    """Make a bare clone of one repository with two commits. Return (folder of clones, first commit, second)."""
     work = tmp_path / "work"
     (work / "art" / "textures").mkdir(parents=True)
     (work / "other").mkdir()
@@ -319,7 +319,7 @@ def test_a_commit_is_taken_out_of_a_clone(tmp_path, clone):
     clones.check_out(git, second, "", tmp_path / "two")
     assert (tmp_path / "one" / "art" / "a.blend").read_bytes() == b"BLENDER one"
     assert (tmp_path / "one" / "art" / "inside").read_bytes() == bytes(range(256))
-    # What points out of the repository is not made, and what the root does not hold is not taken.
+    # Links out of the repository are not created, and files outside of the root are not checked out.
     assert not (tmp_path / "one" / "art" / "outside").is_symlink() and not (tmp_path / "one" / "other").exists()
     assert (tmp_path / "two" / "art" / "a.blend").read_bytes() == b"BLENDER two" and (tmp_path / "two" / "other").exists()
 

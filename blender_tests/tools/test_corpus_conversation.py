@@ -1,4 +1,4 @@
-"""Processes of `make corpus`: each answers, or its end is told."""
+"""Processes of `make corpus`: each answers, or the reason of its end is reported."""
 
 import sys
 import textwrap
@@ -43,7 +43,7 @@ def end_of(talk, task, seconds=60.0, bytes_=4e9):
 
 
 def test_answers_are_whole(talk):
-    """They are longer than what a pipe gives at once."""
+    """They are longer than one read of a pipe."""
     for word in ("a", "b"):
         assert talk.ask("say", 60.0, 4e9, word=word) == {"said": word * 100_000}
 
@@ -55,7 +55,7 @@ def test_an_error_ends_nothing(talk):
 
 def test_a_signal_is_named(talk):
     assert end_of(talk, "kill") == ("crash", "ended by SIGSEGV")
-    # What is dead stays so.
+    # A process that has ended reports the same again.
     assert end_of(talk, "say") == ("crash", "ended by SIGSEGV")
 
 

@@ -1,4 +1,4 @@
-"""`make corpus` in Blender: small files as artists leave them, by both engines, each in processes of its own."""
+"""`make corpus` in Blender: small files as artists save them, by both engines, each in its own processes."""
 
 import json
 import os
@@ -22,7 +22,7 @@ def folder(tmp_path_factory):
 
 
 def run(folder, output, *arguments):
-    """(exit code, what was said, the record)"""
+    """Return (exit code, output, record)."""
     command = [sys.executable, START, "corpus.run", "--folder", folder, "--output", output, "--quick"]
     command += ["--pixels", "48", "--budget", "1", "--threads", "2", *arguments]
     done = subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=600)
@@ -39,7 +39,7 @@ def measured(folder, tmp_path_factory):
 
 
 def test_what_differs_by_settings_alone_is_made_alike(measured):
-    """Clamps, filters, exposure, bounces of a kind: both engines then show the same, and the page tells what was changed."""
+    """Clamps, filters, exposure, bounces of a kind: both engines then show the same, and the page names the changes."""
     row = measured[2]["alike.blend"]
     assert row["verdict"] == "equal" and row["parity"]["noise_mean"] < 0.01, row
     told = ", ".join(row["alike"])
@@ -93,7 +93,7 @@ def test_a_run_again_renders_nothing(measured, folder):
 
 
 def test_an_engine_that_dies_is_a_row(folder, tmp_path):
-    """The process of the one engine ends by a signal while it renders; the run goes on, and fails in the end."""
+    """The process of one engine ends by a signal while it renders; the run continues, and fails if the engine is Lancer."""
     script = tmp_path / "worker.py"
     script.write_text(
         f"import os, signal, sys\nsys.path.insert(0, {str(TOOLS)!r})\nimport start\n"
@@ -112,7 +112,7 @@ def test_an_engine_that_dies_is_a_row(folder, tmp_path):
             del os.environ["DIES"]
         (row,) = record["files"]
         assert (row["verdict"], row["sentence"], code) == (verdict, "crash: ended by SIGSEGV", expected), said
-        # What the other engine shows is on the page.
+        # The page has the other engine's picture.
         assert len(row["pictures"]) == 3 or engine == "LANCER"
 
 
@@ -120,6 +120,6 @@ def test_an_engine_that_dies_is_a_row(folder, tmp_path):
 def test_messages_tell_programs_what_is_missing(which, tmp_path):
     got = blenders.run(which, tmp_path, "corpus_cases", "missing")
     assert got["first"] == {"feature:motion blur": 1, "node:Toon BSDF": 2}
-    # What a later render does not miss is not told of it.
+    # A later render without the feature has no message of it.
     assert got["second"] == {"node:Toon BSDF": 2}
     assert len(got["first lines"]) == 4 and any("slot" in line for line in got["first lines"])

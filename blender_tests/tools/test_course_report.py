@@ -11,7 +11,7 @@ import pytest
 from tools.harness.places import TOOLS
 from tools.harness.workers import START
 
-# A chapter whose only figure is off, in the place of a real one.
+# A run in which the only figure of a chapter is replaced by one that is off.
 OFF = """
 import sys
 sys.path.insert(0, {tools!r})

@@ -1,4 +1,4 @@
-"""The scenes of `make features`: each has its feature, and where it is only compiled in, the picture is that without it."""
+"""The scenes of `make features`: each has its feature; if it is only compiled in, the picture is the one without it."""
 
 import numpy as np
 import pytest
@@ -20,7 +20,7 @@ def rendered(snapshot):
 
 @pytest.mark.parametrize("name", [name for name, case in CASES.items() if case.used])
 def test_a_feature_is_used(name):
-    """Some pixel shows it, or a pass is kept; and it is all finite."""
+    """Some pixel differs, or there is another pass; and all pixels are finite."""
     base = feature_cases.minimal()
     used = CASES[name].used(base)
     picture, statistics = rendered(used)
@@ -35,9 +35,9 @@ def test_a_feature_is_only_there(name):
     idle = case.idle(base)
     picture, with_it = rendered(idle)
     plain, without_it = rendered(base if case.idle_base is None else case.idle_base(base))
-    # The square is seen from the floor in 1e-4 of the directions, a lamp below it shines nowhere.
+    # The square covers 1e-4 of the directions above the floor; a lamp below the floor lights nothing.
     assert abs(picture.mean() / plain.mean() - 1.0) < 1e-3
-    # The scene has something more to be ready for, or the general code is asked for.
+    # The scene needs code of more features, or requests the general code.
     more = idle.lights != base.lights or idle.instances != base.instances or with_it.features != without_it.features
     assert more or idle.settings.features == Features.ALL
 

@@ -1,4 +1,4 @@
-"""What measuring programs share: estimates, comparison of pictures, turns, results that are kept, options, pages."""
+"""Code that the measuring programs share: estimates, comparison of pictures, turns, kept results, options, pages."""
 
 import io
 
@@ -13,13 +13,13 @@ from tools.harness.terminal import Progress, wanted
 
 
 def test_squared_error_takes_off_the_references_noise():
-    """Of two noisy halves the reference's variance is known: what is left is the picture's own, 0.04."""
+    """Two noisy halves give the reference's variance; the rest is the picture's own, 0.04."""
     random = np.random.default_rng(1)
     truth = random.random((200, 200, 3))
     halves = [truth + random.normal(0.0, 0.1, truth.shape) for _ in range(2)]
     reference, variance = estimates.join_halves(*halves)
     picture = truth + random.normal(0.0, 0.2, truth.shape)
-    # A variance from 120 000 numbers is known to sqrt(2/120000) = 0.4 % of itself; four of these.
+    # The variance of 120 000 numbers has a relative standard error of sqrt(2/120000) = 0.4 %; four of these.
     assert variance == pytest.approx(0.1**2 / 2, rel=0.016)
     assert estimates.squared_error(picture, reference, variance) == pytest.approx(0.04, rel=0.02)
     assert estimates.squared_error(picture, reference) > 0.044
@@ -27,7 +27,7 @@ def test_squared_error_takes_off_the_references_noise():
 
 @pytest.mark.parametrize(("freedom", "quantile"), [(1, 12.7062), (4, 2.7764), (30, 2.0423)])
 def test_student_quantiles(freedom, quantile):
-    """The table's 97.5 % values, of four decimals."""
+    """97.5 % quantiles of a printed table, with four decimals."""
     assert estimates.student_quantile(freedom) == pytest.approx(quantile, abs=1e-4)
 
 
@@ -47,9 +47,10 @@ def test_efficiency_ratio_is_ours_over_theirs():
 
 
 def test_interval_covers():
-    """95 % of the intervals over 5 runs hold the truth; of 1000 trials the share is known to 0.7 %, four of these are 2.8 %.
+    """95 % of the intervals over 5 runs contain the truth; the share of 1000 trials has a standard error of 0.7 %, four of
+    these are 2.8 %.
 
-    Errors and seconds spread by a tenth, where their logarithms are as good as normal.
+    Errors and seconds vary by a tenth, so that their logarithms are nearly normal.
     """
     random, trials, held = np.random.default_rng(2), 1000, 0
     truth = 1.0 / (0.5 * 3.0)
@@ -69,7 +70,7 @@ def test_comparison_sees_another_picture_and_not_noise():
     random = np.random.default_rng(3)
     picture = random.random((64, 96, 3)) * np.linspace(0.2, 1.0, 96)[:, None]
     noisy = picture + random.normal(0.0, 0.1, picture.shape)
-    # Blocks of 64 pixels and 3 channels: noise of 0.1 is 0.0125 in a channel, some 0.02 of the level.
+    # Blocks of 64 pixels and 3 channels: noise of 0.1 is 0.0125 in a channel's mean, some 0.02 of the level.
     assert pictures.is_same(pictures.difference(picture, noisy), 0.05)
     assert not pictures.is_same(pictures.difference(picture, picture[:, ::-1]), 0.05)
     assert not pictures.is_same(pictures.difference(picture, 1.2 * picture), 0.05)
@@ -77,7 +78,7 @@ def test_comparison_sees_another_picture_and_not_noise():
 
 
 def test_competitors_take_turns():
-    """Everyone once a round; medians are of each, ratios of each round."""
+    """Each is measured once per round; medians are over rounds, ratios within rounds."""
     order = []
 
     def measure(name, number):
@@ -156,17 +157,17 @@ def test_noise_and_bias_are_told_apart():
         return [np.repeat(level + noise * source.normal(size=shape), 3, axis=2) for _ in range(count)]
 
     reference = Reference.of(grey(2, 20.0, 0.2))
-    # The mean of two: 0.2 / sqrt 2, relative to 20 and 1 % of it. Of 60 000 pixels the square is known to 0.6 %: to the root of
-    # 2 / 60 000.
+    # The mean of two: 0.2 / sqrt 2, relative to 20 and 1 % of it. The square over 60 000 pixels has a relative standard error
+    # of sqrt(2/60000) = 0.6 %.
     scale = 20.2
     assert reference.error == pytest.approx(0.2 / 2**0.5 / scale, rel=0.01)
     noise, bias = reference.split([luminance(picture) for picture in grey(5, 20.5, 0.4)])
     assert noise == pytest.approx(0.4 / scale, rel=0.01)
     assert bias == pytest.approx(0.5 / scale, rel=0.01)
-    # The reference's own noise counts for nothing.
+    # The reference's own noise is subtracted.
     assert reference.distance(luminance(*grey(1, 20.5, 0.4))) == pytest.approx(np.hypot(0.4, 0.5) / scale, rel=0.01)
     noise, bias = reference.split([luminance(picture) for picture in grey(5, 20.0, 0.4)])
-    # Its square is a difference, which is known to some thousandths of the noise's: so the bias to their root.
+    # The squared bias is a difference with an error of some thousandths of the squared noise; the bias has the root of that.
     assert bias < 0.1 * noise
 
 

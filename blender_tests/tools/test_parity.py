@@ -1,4 +1,4 @@
-"""The judge of `make parity`: its arithmetic without Blender, Cycles against itself, and the fast scenes by both engines."""
+"""The verdicts of `make parity`: arithmetic without Blender, Cycles against itself, and the fast scenes by both engines."""
 
 import blenders
 import numpy as np
@@ -49,7 +49,7 @@ def test_general_difference(picture, factor, verdict):
 
 
 def test_one_wrong_corner_fails():
-    """Two of 96 blocks are off, which the mean cannot see."""
+    """Two of 96 blocks are wrong, which the mean does not show."""
     theirs = np.full((64, 96, 3), 0.5)
     ours = theirs.copy()
     ours[:8, :16] *= 1.019
@@ -60,7 +60,7 @@ def test_one_wrong_corner_fails():
 
 
 def test_a_fault_in_one_block_of_few_fails():
-    """Two channels of one block in 96: less than a hundredth of the values."""
+    """Two channels of one block in 96 are wrong: less than a hundredth of the values."""
     theirs = np.full((64, 96, 3), 0.5)
     ours = theirs.copy()
     ours[:8, :8, :2] *= 1.7
@@ -68,7 +68,7 @@ def test_a_fault_in_one_block_of_few_fails():
 
 
 def test_one_block_of_150_fails():
-    """A hundredth of them would be one and a half."""
+    """A hundredth of 150 blocks would be one and a half."""
     theirs = np.full((80, 120, 3), 0.5)
     ours = theirs.copy()
     ours[:8, :8] *= 1.1
@@ -77,7 +77,7 @@ def test_one_block_of_150_fails():
 
 @pytest.mark.parametrize("wrong, verdict", [(3, "pass"), (5, "fail")])
 def test_a_hundredth_of_many_blocks_may_differ(wrong, verdict):
-    """Of 400 blocks four."""
+    """A hundredth of 400 blocks is four."""
     theirs = np.full((160, 160, 3), 0.5)
     ours = theirs.copy()
     ours[:8, : 8 * wrong, 0] *= 1.1
@@ -92,12 +92,12 @@ def test_a_bright_part_excuses_no_other():
     ours[16:] *= 1.04
     numbers, verdict = _judge(ours, theirs)
     assert numbers.mean < EXACT.limit.mean and verdict.name == "fail"
-    # Three quarters are wrong; the lamp still counts as twice the floor, in a twenty-fourth of the picture.
+    # Three quarters are wrong; the lamp's light is limited to twice that of the floor, in a twenty-fourth of the picture.
     assert numbers.dim.mean == pytest.approx(0.04 * 0.75 / (1 + 1 / 24), rel=1e-9)
 
 
 def test_a_bright_part_is_compared_with_its_own_light():
-    """What is brighter than the rest shows there in its own share; by the picture's level it is as large as ever."""
+    """In a bright part the difference is relative to its own light; relative to the picture's level it stays as large."""
     theirs = np.full((64, 96, 3), 0.1)
     theirs[:16, :16] = 20.0
     numbers, _ = _judge(1.004 * theirs, theirs)
@@ -112,9 +112,9 @@ def test_wrong_channel_and_wrong_place_fail(picture):
 
 
 def test_noise_is_told_from_difference(picture):
-    """Noise of 8 % in each pixel is 1 % in a block: seen as noise, and no excuse for a difference of 10 %."""
+    """Noise of 8 % in each pixel is 1 % in a block: it is measured as noise, and does not excuse a difference of 10 %."""
     numbers, verdict = _judge(picture, picture, sigma=0.08 * picture.mean())
-    # Two halves and two pictures make the difference as noisy as one half.
+    # The difference of two pictures, each the mean of two halves, is as noisy as one half.
     assert numbers.sigma == pytest.approx(0.01, rel=0.15)
     assert numbers.noise_mean == pytest.approx(np.sqrt(2 / np.pi) * 0.01, rel=0.15)
     assert verdict == ("noise", False)
@@ -142,7 +142,7 @@ def test_black_against_black_and_light_against_black():
 
 
 def test_furnace_judges_each_tile(picture):
-    """A dark tile 1 % off fails, though it is nothing beside the bright ones."""
+    """A dark tile that is 1 % wrong fails, although its light is negligible beside the bright tiles."""
     theirs = np.ones((64, 80, 3))
     theirs[:16, :16] = 0.01
     ours = theirs.copy()
@@ -152,7 +152,7 @@ def test_furnace_judges_each_tile(picture):
 
 
 def test_scale_of_the_caller(picture):
-    """A difference of 0.001 at distance 2 is 0.0005 there, whatever the picture's level."""
+    """A difference of 0.001 at distance 2 counts as 0.0005, whatever the picture's level."""
     distance = np.full((64, 96, 1), 2.0)
     numbers = figures.measure(_halves(picture + 0.001), _halves(picture), PIXELS, distance)
     assert numbers.mean == pytest.approx(0.0005, rel=1e-9)
@@ -160,14 +160,14 @@ def test_scale_of_the_caller(picture):
 
 def test_positions_are_judged_by_pixels(picture):
     ours = picture.copy()
-    # Up to a hundredth of the pixels lies on outlines.
+    # Up to a hundredth of the pixels lie on outlines.
     ours[0, :50] += 1.0
     assert _judge(ours, picture, PIXELS._replace(limit=figures.Limit(1.0, 1e-4)))[1].name == "pass"
     assert _judge(picture + 2e-4 * picture.mean(), picture, PIXELS)[1].name == "fail"
 
 
 def test_pixels_that_show_nothing_are_no_agreement():
-    """Four in ten pixels show a surface; a fiftieth of these is wrong, a hundredth of all."""
+    """Four in ten pixels show a surface; a fiftieth of these is wrong, less than a hundredth of all."""
     theirs = np.zeros((100, 200, 3))
     theirs[60:] = 1.0
     ours = theirs.copy()
@@ -196,7 +196,7 @@ def test_the_judge_finds_cycles_equal_to_itself(tmp_path):
     assert got["counts"] == {"pass": 4}, "\n".join(wrong)
 
 
-# Of the scenes of `make test`, those whose settings came with a later Blender.
+# The scenes of `make test` whose settings exist only in a later Blender.
 _KINDS = ("point", "spot", "sun", "area")
 _SINCE_45 = {"temperature_warm"} | {
     f"light_{name}_{kind}" for name in ("exposure", "normalize_off", "temperature") for kind in _KINDS
@@ -210,7 +210,7 @@ _TOO_NEW = {
 }
 
 
-# The program has older rules: the scenes that show these.
+# The scenes that show the older rules of the program's Blender.
 _RULES = (
     "principled_*,glossy_*,glass_*,diffuse_*,mix_*,bump_*,normals_*,image_*,color_attribute_*,object_info_random,point_soft,"
     "temperature_warm,light_spot_*,light_area_*,light_sun_soft,light_true_*,camera_*,film_*,pass_*"

@@ -1,4 +1,4 @@
-"""The runner of `make parity` with made-up engines: what it makes of their pictures, its page, and the files it reads."""
+"""The runner of `make parity` with fake engines: its verdicts on their pictures, its page, and the files it reads."""
 
 import struct
 
@@ -33,14 +33,14 @@ def test_a_picture_of_nothing_is_an_error(judged):
 
 
 def test_data_that_change_with_the_seed_are_refused(judged):
-    """Noise of 2e-5 in a pixel: within the limit, and more than a third of it in one pixel of a hundred."""
+    """Noise of 2e-5 in a pixel is within the limit, but more than a third of it in one of a hundred pixels."""
     assert judged["data"][0] == "pass"
     assert judged["noisy data"][0] == "noise"
     assert judged["noisy data, few samples"][0] == "noise"
 
 
 def test_noise_excuses_only_so_much(judged):
-    """Noise of 1.2 % in a block may add less than three limits, one of 12 % more."""
+    """Noise of 1.2 % in a block adds less than three limits, noise of 12 % more."""
     assert judged["some noise"][0] == "noise"
     assert judged["some noise, few samples"][0] == "pass"
     assert judged["much noise, few samples"][0] == "noise"
@@ -61,7 +61,7 @@ def test_passes_are_put_together(judged):
 
 
 def test_distances_are_from_the_camera(judged):
-    """The camera is at (1, 2, 3); one pixel shows the point (1, 2, 8), one (4, 6, 3), one nothing."""
+    """The camera is at (1, 2, 3); one pixel shows the point (1, 2, 8), one shows (4, 6, 3), one is empty."""
     assert np.allclose(judged["distances"], [5.0, 5.0, 5.0])
 
 
@@ -71,7 +71,7 @@ def test_exit_code(judged, verdict, code):
 
 
 def test_page_and_record(judged):
-    """Every scene is on the page with its verdict and its remarks, and in the record with its figures."""
+    """The page has every scene with its verdict and its remarks, the record every scene with its figures."""
     page, record = judged["page"], judged["record"]
     for scene in record["scenes"]:
         assert f"<b>{scene['name']}</b>" in page and f'class="{scene["verdict"]}">{scene["verdict"]}<' in page
@@ -84,7 +84,7 @@ def test_page_and_record(judged):
 
 
 def _exr(layers):
-    """The bytes of an OpenEXR file of one uncompressed part; layers: {channel: array (height, width)}."""
+    """Return the bytes of an OpenEXR file of one uncompressed part; layers: {channel: array (height, width)}."""
     height, width = next(iter(layers.values())).shape
     text = lambda name: name.encode() + b"\0"  # noqa: E731
     kinds = {np.dtype("<f4"): 2, np.dtype("<f2"): 1, np.dtype("<u4"): 0}

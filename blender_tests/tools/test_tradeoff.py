@@ -11,7 +11,7 @@ def test_curves():
     first, second, third = ([(t * s, 1.0 / t**0.5) for t in (1, 4, 16)] for s in (1.0, 2.0, 3.0))
     points = middle([first, third, second])
     assert points[1] == (8.0, 0.5, 0.5, 0.5)
-    # To a quarter of the squared error in four times the seconds.
+    # A quarter of the squared error takes four times the seconds.
     assert seconds_to(points, 1.0 / 8**0.5) == pytest.approx(16.0)
     assert seconds_to(points, 1.1) is None and seconds_to(points, 0.2) is None
     assert slope(points) == pytest.approx(0.5)
@@ -35,6 +35,6 @@ def test_the_readme_has_the_presets_and_the_chart(tmp_path, monkeypatch):
     text = path.read_text()
     assert text.startswith(f"before\n{begin}\na processor, 2 processors, load 0.5") and text.endswith(f"{end}\nafter\n")
     assert "| DRAFT | 10 % | 304 | 7.39 | 8.05 % | 8.37 % | target error |" in text
-    # A head, a line below it and one preset; equal errors stand on the page alone.
+    # A head, a line below it and one preset; only the page has equal errors.
     assert sum(line.startswith("|") for line in text.splitlines()) == 3
     assert (tmp_path / "scenes" / "tradeoff.png").read_bytes() == b"chart"

@@ -1,1 +1,1 @@
-"""The scenes of scenes/parity by Lancer and by Cycles: `make parity`."""
+"""Render the scenes of scenes/parity by Lancer and by Cycles: `make parity`."""

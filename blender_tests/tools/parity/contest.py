@@ -10,7 +10,7 @@ from scenes.parity import figures
 
 from . import engines
 
-# Where few samples must do: what noise may add to a limit, in limits. A fault that `make test` shall find is larger.
+# With few samples, the most that noise may add to a limit, in limits. `make test` must find faults that are larger.
 MOST_ADDED = 3.0
 
 
@@ -18,7 +18,7 @@ MOST_ADDED = 3.0
 class Outcome:
     case: object
     verdict: str = "error"  # pass, fail, noise, error, absent
-    note: str = ""  # what else there is to know, in a sentence
+    note: str = ""  # a remark, in a sentence
     samples: int = 0  # of each engine
     seconds: dict = field(default_factory=dict)  # by engine
     parts: dict = field(default_factory=dict)  # pass -> (Figures, Verdict)
@@ -27,7 +27,7 @@ class Outcome:
 
     @property
     def worst(self):
-        """The pass with the worst verdict, and of these the one farthest beyond its limits or nearest to them."""
+        """Return the pass with the worst verdict; of several, the one with the largest difference relative to its limits."""
         limit = self.case.limits
 
         def badness(name):
@@ -38,7 +38,7 @@ class Outcome:
 
 
 class Halves:
-    """The two halves of one engine's pictures, each the mean of all renders that went into it."""
+    """The two halves of one engine's pictures, each the mean of its renders."""
 
     def __init__(self, engine):
         self.engine = engine
@@ -58,13 +58,13 @@ class Halves:
 
     @property
     def pictures(self):
-        """{pass: (half, half)}"""
+        """Return {pass: (half, half)}."""
         first, second = self._sums
         return {name: (first[name] / self._samples, second[name] / self._samples) for name in first if name in second}
 
 
 def run(case, folder, engine_pair=("LANCER", "CYCLES"), most_samples=1024, noise_aware=False, first_seed=1):
-    """The Outcome of a case. most_samples: of each half. noise_aware: what noise explains is no failure."""
+    """Return the Outcome of a case. most_samples: of each half. noise_aware: a difference that noise explains is no failure."""
     outcome = Outcome(case)
     absent = _absent(case)
     if absent:
@@ -73,7 +73,7 @@ def run(case, folder, engine_pair=("LANCER", "CYCLES"), most_samples=1024, noise
     try:
         _contest(case, outcome, folder, engine_pair, most_samples, first_seed)
     except Exception as error:
-        # A scene that raises is one line of the page; the others still run.
+        # A scene that raises an error is one line of the page; the others still run.
         first_line = next(iter(str(error).splitlines()), "")
         outcome.verdict, outcome.note = "error", f"{type(error).__name__}: {first_line}"
         return outcome
@@ -85,7 +85,7 @@ def run(case, folder, engine_pair=("LANCER", "CYCLES"), most_samples=1024, noise
 
 
 def _bearable(case, outcome):
-    """Whether noise adds so little to the limits that they still mean something; to data it may add nothing."""
+    """Return whether noise adds at most MOST_ADDED limits to each limit; to limits of data it may add nothing."""
     limit = case.limits
     return case.kind.averages and all(
         more.mean <= MOST_ADDED * limit.mean and more.p99 <= MOST_ADDED * limit.p99
@@ -117,7 +117,7 @@ def _contest(case, outcome, folder, engine_pair, most_samples, first_seed):
     samples, seed = min(case.samples, most_samples), first_seed
     while True:
         for index, halves in enumerate(pairs):
-            # A contest of an engine with itself needs other numbers.
+            # A contest of an engine with itself needs different seeds.
             halves.add(scene, case, samples, seed + (1000 if index and engine_pair[0] == engine_pair[1] else 0), folder)
         outcome.samples += 2 * samples
         outcome.seconds = {halves.engine: halves.seconds for halves in pairs}
@@ -130,7 +130,7 @@ def _contest(case, outcome, folder, engine_pair, most_samples, first_seed):
             or any(figures.hopeless(n, limit) for n in (numbers, numbers.dim) if n)
             for numbers, verdict in outcome.parts.values()
         )
-        # The next round doubles what there is.
+        # The next round doubles the samples.
         samples, seed = outcome.samples // 2, seed + 2
         if settled or not case.kind.averages or outcome.samples > most_samples:
             break
@@ -139,7 +139,7 @@ def _contest(case, outcome, folder, engine_pair, most_samples, first_seed):
     if not all(verdict.quiet for verdict in verdicts) and outcome.verdict != "fail":
         outcome.note = "the noise is above a third of the limit"
         if not case.kind.averages:
-            # No number of samples helps: what one seed shows is not what the next one does.
+            # More samples do not help: data must not depend on the seed.
             outcome.verdict = "noise"
     outcome.messages = _messages(scene)
 
@@ -165,7 +165,7 @@ def _judge(case, outcome, scene, ours, theirs):
 
 
 def _sum_of_passes(pictures):
-    """Combined, put together again from its parts, half by half."""
+    """Return Combined as the sum of its passes, half by half."""
 
     def whole(half):
         total = pictures["Emission"][half] + pictures["Environment"][half]
@@ -178,7 +178,7 @@ def _sum_of_passes(pictures):
 
 
 def _distances(scene, pair):
-    """How far from the camera each pixel's surface lies, (height, width, 1); the mean where there is none."""
+    """Return the distance of each pixel's surface from the camera, (height, width, 1); the mean distance if there is none."""
     picture = (pair[0] + pair[1]) / 2
     seen = np.any(picture != 0.0, axis=-1, keepdims=True)
     distances = np.linalg.norm(picture - np.array(scene.camera.matrix_world.translation), axis=-1, keepdims=True)

@@ -1,4 +1,4 @@
-"""Both engines on the same integral: equal bounces and filters, nothing clamped, guessed, stopped early or smoothed."""
+"""Let both engines estimate the same integral: equal bounces and filters, no clamping, adaptive sampling or denoising."""
 
 import os
 
@@ -43,7 +43,7 @@ def unbias(scene, case, samples, seed):
     _set_cycles(scene.cycles, case, samples, seed)
     _set_lancer(scene.lancer, case, samples, seed)
     for setting in ("film_transparent_glass", "film_transparent_roughness"):
-        # Where Lancer has its own, the scene has set Cycles'.
+        # The scene sets Cycles' settings, of which Lancer has its own copies.
         if hasattr(scene.lancer, setting):
             setattr(scene.lancer, setting, getattr(scene.cycles, setting))
     scene.render.resolution_x, scene.render.resolution_y = case.size
@@ -51,9 +51,9 @@ def unbias(scene, case, samples, seed):
     scene.render.use_compositing = scene.render.use_sequencer = False
     scene.render.use_motion_blur = scene.render.use_simplify = False
     layer = bpy.context.view_layer
-    # 0: the scene's number.
+    # 0: the scene's number of samples.
     layer.samples = 0
-    # One pass less: Blender 5.0 cannot write two of them where pixels are not square.
+    # One pass fewer: Blender 5.0 cannot write two of them if pixels are not square.
     layer.use_pass_combined = "Combined" in case.passes
     for name in case.passes:
         _ask_for(layer, scene, PASSES[name][0])
@@ -69,14 +69,14 @@ def _ask_for(view_layer, scene, switch):
 
 
 def unbias_cycles(cycles, samples, seed):
-    """So many samples of all light, from a sequence whose errors are independent between seeds."""
+    """Set the samples of Cycles, without limits of light, from a sequence whose errors are independent between seeds."""
     cycles.device, cycles.samples, cycles.seed = "CPU", samples, seed
     cycles.use_adaptive_sampling = cycles.use_denoising = cycles.use_fast_gi = False
     cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0.0
     cycles.blur_glossy = 0.0
     cycles.caustics_reflective = cycles.caustics_refractive = True
     cycles.use_animated_seed = cycles.use_auto_tile = False
-    # The pattern that older Blenders know under another name; never the one that hides error from the eye.
+    # The pattern has another name in older Blenders; blue noise, which correlates the errors of pixels, is never used.
     for pattern in ("TABULATED_SOBOL", "PROGRESSIVE_MULTI_JITTER"):
         try:
             cycles.sampling_pattern = pattern
@@ -102,7 +102,7 @@ def _set_cycles(cycles, case, samples, seed):
 
 
 def unbias_lancer(lancer, samples, seed):
-    """So many samples of all light."""
+    """Set the samples of Lancer, without limits of light."""
     lancer.quality, lancer.samples, lancer.seed = "CUSTOM", samples, seed
     lancer.clamp_indirect = 0.0
     for setting in ("target_error", "time_limit"):
@@ -122,14 +122,14 @@ def _set_lancer(lancer, case, samples, seed):
 
 
 def _refuse_dropped_samples(statistics):
-    """No scene of the list holds what float cannot."""
+    """Raise an error if samples overflowed: no scene of the list may exceed the range of floats."""
     if statistics["invalid_samples"]:
         place = tuple(statistics[f"invalid_{name}"] for name in ("x", "y", "sample"))
         raise RuntimeError(f"{statistics['invalid_samples']} samples were not finite, the first at {place}")
 
 
 def render(scene, engine, case, samples, seed, folder):
-    """{pass: picture} by engine, under the names of Blender 5; Combined in RGB, with its alpha as a pass of its own."""
+    """Return {pass: picture} by an engine, with the names of Blender 5; Combined has RGB, and its alpha is a separate pass."""
     scene.render.engine = engine
     unbias(scene, case, samples, seed)
     path = os.path.join(folder, "picture.exr")

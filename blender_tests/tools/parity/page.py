@@ -1,4 +1,4 @@
-"""The page and the JSON that a run leaves: every scene with both pictures, their difference, and figures beside limits."""
+"""The page and the JSON of a run: every scene with both pictures, their difference, figures and limits."""
 
 import math
 import os
@@ -75,6 +75,6 @@ def _record(outcome):
 
 
 def as_record(figures):
-    """JSON knows no infinity."""
+    """Return the figures for JSON, which has no infinity."""
     plain = {key: value if math.isfinite(value) else None for key, value in figures._asdict().items() if key != "dim"}
     return {**plain, "dim": as_record(figures.dim)} if figures.dim else plain

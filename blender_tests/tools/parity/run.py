@@ -1,4 +1,4 @@
-"""Renders the parity scenes with Lancer and Cycles and judges them: `make parity`.
+"""Render the parity scenes with Lancer and Cycles, and compare the pictures: `make parity`.
 
 Runs under a Python that has bpy, and inside Blender.
 """
@@ -17,7 +17,7 @@ from tools.harness.terminal import Progress, make_parser
 
 from . import contest, page
 
-# What `make test` renders each half with: the limits then allow for the noise.
+# Samples of each half in `make test`: the limits then allow for the noise.
 QUICK_SAMPLES = 32
 
 
@@ -34,7 +34,7 @@ def read_arguments():
 
 @contextlib.contextmanager
 def errors_in(path):
-    """Sends what Blender and others say on standard error into a file meanwhile."""
+    """A context that redirects standard error, also that of Blender, into a file."""
     saved = os.dup(2)
     with open(path, "w", encoding="utf-8") as log:
         os.dup2(log.fileno(), 2)

@@ -1,6 +1,6 @@
 """The chart of `make tradeoff`: error against seconds, both logarithmic, a name at the end of each curve."""
 
-# Colour, dashes, and what is written at the end of the curve.
+# Colour, dashes, and the name at the end of the curve.
 _LOOKS = {
     "PATH": ("#1b6ca8", "-", "Lancer PATH"),
     "Cycles": ("#d9822b", "-", "Cycles"),
@@ -9,10 +9,10 @@ _LOOKS = {
     "NORMALS": ("#8a8a8a", "-", "NORMALS"),
 }
 _PRESETS = "#12395c"
-# Beyond this a distance says no more than that it is another picture.
+# A larger distance means only that the pictures differ.
 _TOP = 4.0
 _LINE = 12  # points between two names, one above the other
-_WIDTH = 7  # points that a letter takes
+_WIDTH = 7  # points per letter
 
 
 def write(figures, folder):
@@ -21,7 +21,7 @@ def write(figures, folder):
     matplotlib.use("Agg")
     from matplotlib import pyplot
 
-    # Letters stay letters: small files whose text can be found.
+    # Text stays text, not outlines: smaller files, and the text can be searched.
     pyplot.rcParams["svg.fonttype"] = "none"
     figure, axis = pyplot.subplots(figsize=(8.6, 5.4), layout="constrained")
     for name, rows in figures["curves"].items():
@@ -86,7 +86,7 @@ def _curve(axis, name, rows):
 
 
 def _names(axis, curves):
-    """Of the others, beside the ends of their curves; one that would cover another goes below it."""
+    """Draw the names of the other curves beside their ends; a name that would cover another moves below it."""
     points = axis.figure.dpi / 72.0
     ends = []
     for name, rows in curves.items():
@@ -108,7 +108,7 @@ def _names(axis, curves):
 
 
 def _own_name(axis, rows):
-    """On the side of its curve where no slower one is."""
+    """Draw the name of PATH on the left of its curve, where no slower curve is."""
     row, (color, _, label) = rows[-1], _LOOKS["PATH"]
     place = {"xytext": (-8, -3), "textcoords": "offset points", "ha": "right", "va": "top"}
     axis.annotate(label, (row["seconds"], row["error"]), fontsize=9, color=color, weight="bold", **place)

@@ -1,4 +1,4 @@
-"""Curves of error against seconds: what several seeds come to, and where one curve lies beside another."""
+"""Curves of error against seconds: medians over several seeds, and comparisons between curves."""
 
 import math
 import statistics
@@ -9,7 +9,7 @@ from tools.harness.errors import luminance
 
 
 def middle(points):
-    """[(seconds, error, least error, greatest error)] of several seeds' points, [(seconds, error)] each."""
+    """Return [(seconds, error, least error, greatest error)] of several seeds' points, [(seconds, error)] each."""
     result = []
     for of_seeds in zip(*points, strict=True):
         seconds, errors = zip(*of_seeds, strict=True)
@@ -18,7 +18,7 @@ def middle(points):
 
 
 def seconds_to(points, error):
-    """Seconds until a curve of (seconds, error, ...) comes to that error, between points by their logarithms; else None."""
+    """Return the seconds at which a curve of (seconds, error, ...) reaches an error, interpolated by logarithms, or None."""
     for (t0, e0, *_), (t1, e1, *_) in zip(points[:-1], points[1:], strict=True):
         if e0 >= error >= e1 and e0 > e1:
             share = math.log(e0 / error) / math.log(e0 / e1)
@@ -27,13 +27,13 @@ def seconds_to(points, error):
 
 
 def slope(points):
-    """p of error = constant * seconds^-p, by least squares of logarithms."""
+    """Return p of error = constant * seconds^-p, by least squares of logarithms."""
     x, y = np.log([point[0] for point in points]), np.log([point[1] for point in points])
     return -float(np.polyfit(x, y, 1)[0])
 
 
 def conclude(curves, ours, theirs):
-    """Figures of all curves, for the page and for the file; curves: {name: [of each seed [(samples, seconds, picture)]]}."""
+    """Return the figures of all curves, for page and file; curves: {name: [of each seed [(samples, seconds, picture)]]}."""
     result = {}
     for name, of_seeds in curves.items():
         reference = theirs if name == "Cycles" else ours
@@ -46,13 +46,13 @@ def conclude(curves, ours, theirs):
         ]
         for index, row in enumerate(rows):
             row["noise"], row["bias"] = reference.split([points[index][1] for points in shown])
-        # Below five hundredths of a second Cycles' clock says nothing.
+        # Below 0.05 s Cycles' clock, which counts hundredths, is too coarse.
         result[name] = [row for row in rows if name != "Cycles" or row["seconds"] >= 0.05]
     return result
 
 
 def conclude_presets(presets, targets, ours):
-    """presets: {name: [of each seed (samples, seconds, picture, error as told, what ended it)]}."""
+    """Return the figures of presets: {name: [of each seed (samples, seconds, picture, reported error, reason of its end)]}."""
     result = {}
     for name, renders in presets.items():
         (point,) = middle([[(seconds, ours.distance(luminance(picture)))] for _, seconds, picture, *_ in renders])
@@ -64,7 +64,7 @@ def conclude_presets(presets, targets, ours):
 
 
 def headlines(curves):
-    """Seconds to equal error, at the errors of the presets and between, as far as both curves were measured."""
+    """Return the seconds to equal error, at the errors of the presets and between, within the range of both curves."""
     rows = []
     for error in (0.5, 0.3, 0.2, 0.1, 0.05, 0.03, 0.01):
         found = [seconds_to([(row["seconds"], row["error"]) for row in curves[name]], error) for name in ("PATH", "Cycles")]
@@ -74,7 +74,7 @@ def headlines(curves):
 
 
 def slopes(curves):
-    """Of those that go on falling, from where samples have spread over a pixel."""
+    """Return the slopes of the curves of converging renders, from 4 samples on, when samples cover a pixel evenly."""
     result = {}
     for name in ("PATH", "Cycles"):
         points = [(row["seconds"], row["error"]) for row in curves[name] if row["samples"] >= 4 and row["error"] > 0.0]

@@ -18,7 +18,7 @@ def _seconds(value):
 
 
 def caption(figures):
-    """Sentences that a reader of the chart needs."""
+    """Yield the sentences below the chart."""
     ours, theirs, apart = figures["reference"], figures["cycles_reference"], figures["apart"]
     width, height = figures["size"]
     yield (
@@ -44,7 +44,7 @@ def caption(figures):
 
 
 def tables(figures):
-    """(title, head, rows) of all that was measured."""
+    """Yield (title, head, rows) of each table."""
     rows = []
     for name, points in figures["curves"].items():
         for row in points:

@@ -1,7 +1,7 @@
-"""`make tradeoff`: how near a picture comes in how much time, with Lancer and with Cycles: build/tradeoff/index.html.
+"""`make tradeoff`: the error of pictures against seconds, with Lancer and with Cycles: build/tradeoff/index.html.
 
 The scene is the showcase or a file, in a small picture. Every curve is rendered with several seeds, by turns with the others,
-so that a slow minute of the machine falls on all.
+so that a slow minute of the machine affects all.
 """
 
 import math
@@ -25,7 +25,7 @@ from . import chart, curves, page, runs
 
 _PIXELS = 192 * 108
 _REFERENCE, _QUICK_REFERENCE = 32768, 4096
-# Cycles' own reference gets half of the samples: a sample of its takes longer.
+# Cycles' own reference has half of the samples: a sample of Cycles takes longer.
 _CYCLES_SHARE = 2
 _SEEDS, _QUICK_SEEDS = 5, 3
 _MOST, _QUICK_MOST = 1024, 128
@@ -46,7 +46,7 @@ def read_arguments():
 
 
 def open_scene(arguments):
-    """The scene with settings for this run only; a file is never saved."""
+    """Return the scene with settings for this run only; a file is never saved."""
     if arguments.blend is None:
         scene = scenes.load("showcase")
     elif arguments.blend.is_file():
@@ -71,7 +71,7 @@ def open_scene(arguments):
 
 
 class Study:
-    """Curves: {name: [of each seed [(samples, seconds, picture)]]}."""
+    """The renders of a run. curves: {name: [of each seed [(samples, seconds, picture)]]}."""
 
     def __init__(self, scene, quick, say):
         self.scene, self.quick, self.say = scene, quick, say
@@ -85,7 +85,7 @@ class Study:
         self.curves, self.presets = {}, {}
 
     def references(self, samples):
-        """Those of Lancer and of Cycles; seeds are far from those of the curves."""
+        """Return the references of Lancer and of Cycles; their seeds are far from those of the curves."""
         halves = [self.exact.converged(seed, samples // 2) for seed in (1001, 1002)]
         self.say(f"reference of Lancer, {samples} samples")
         theirs = [self.cycles.render(seed, samples // (2 * _CYCLES_SHARE))[1] for seed in (1001, 1002)]
@@ -120,14 +120,14 @@ class Study:
 
 
 def measure(arguments, say):
-    """All figures, as they go into the file."""
-    # Before anything runs: its load is that of others.
+    """Return all figures, for the file."""
+    # The load is measured before anything runs, so that it is that of other processes.
     told = header(arguments.quick)
     scene = open_scene(arguments)
     study = Study(scene, arguments.quick, say)
     samples = arguments.samples or (_QUICK_REFERENCE if arguments.quick else _REFERENCE)
     ours, theirs = study.references(samples)
-    # Whoever is first brings everything into the caches.
+    # The first render fills the caches.
     study.cycles.render(1, 1)
     for number in range(_QUICK_SEEDS if arguments.quick else _SEEDS):
         study.round(number + 1, number)
@@ -154,7 +154,7 @@ def measure(arguments, say):
 
 def main():
     arguments = read_arguments()
-    # Cycles tells of every picture that it writes.
+    # Cycles prints a line for every picture that it writes.
     with captured_output() as (terminal, _):
         figures = measure(arguments, Progress(terminal))
     page.write(figures, arguments.output)

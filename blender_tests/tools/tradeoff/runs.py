@@ -17,7 +17,7 @@ _DEEPEST_CLASSIC = 16
 
 
 class Lancer:
-    """One scene as Lancer has it; figures come with the seconds since the first sample."""
+    """One scene in Lancer; figures have the seconds since the first sample."""
 
     def __init__(self, scene):
         scene.render.engine = "LANCER"
@@ -36,7 +36,7 @@ class Lancer:
         return Session(self.scene, self.camera, dataclasses.replace(self.snapshot.settings, **fields))
 
     def doublings(self, integrator, seed, most):
-        """[(samples, seconds, picture)] at 1, 2, 4 ... most samples of one render."""
+        """Return [(samples, seconds, picture)] at 1, 2, 4 ... most samples of one render."""
         found, done = [], 0
         with self.session(integrator, seed, samples=most) as session:
             while done < most:
@@ -53,7 +53,7 @@ class Lancer:
             return _picture(session)
 
     def preset(self, seed, target, most):
-        """(samples on average, seconds, picture, what the render says of its error, what ended it)."""
+        """Return (samples on average, seconds, picture, reported error, reason of the render's end)."""
         with self.session(Integrator.PATH, seed, samples=most, target_error=target) as session:
             schedule = Schedule(session)
             while schedule.start():
@@ -69,7 +69,7 @@ def _picture(session):
 
 
 class Cycles:
-    """The same scene by F12 in Cycles, whose clock counts hundredths of a second."""
+    """The same scene, rendered by F12 in Cycles, whose clock counts hundredths of a second."""
 
     def __init__(self, scene):
         self.scene = scene
@@ -83,7 +83,7 @@ class Cycles:
 
 
 def without_exact_shapes(scene):
-    """As a context: every object is its mesh."""
+    """Return a context in which every object is traced as its mesh."""
     return _Meshes(scene)
 
 
@@ -101,6 +101,6 @@ class _Meshes:
     def _set(shapes):
         for item, shape in shapes.items():
             item.lancer.shape = shape
-            # A property of an add-on does not tell Blender by itself that the object changed.
+            # Blender does not tag the object when an add-on's property changes.
             item.update_tag()
         bpy.context.view_layer.update()
