@@ -14,7 +14,7 @@ _STEPS = 2.0
 # Cells of directions per unit, wider than any error by rounding, and the margin at their borders in cells.
 _CELLS = 64.0
 _EDGE = 0.02
-# A direction to which modelled faces are hardly ever parallel: its dot product tells a normal from its opposite.
+# A direction to which modelled faces are hardly ever parallel: the sign of its dot product distinguishes opposite normals.
 _AWRY = np.array([0.5432, 0.7531, 0.3711])
 # Extent of infinite planes in boxes.
 _FAR = 1e30

@@ -327,7 +327,7 @@ def test_export(which, tmp_path):
 
 @pytest.mark.parametrize("which", [MODULE, PROGRAM])
 def test_export_under_transforms(which, tmp_path):
-    """What Cycles shows of a lamp that is flattened, as measured in 3.4.1, 4.2, 4.5, 5.0.1 and 5.2.3; shears are told."""
+    """A flattened lamp lights like Cycles' lamps, measured in 3.4.1, 4.2, 4.5, 5.0.1 and 5.2.3; a message names shears."""
     got = blenders.run(which, tmp_path, "light_cases", "transforms")
     new = got["version"] >= [4, 0]
     dark = {"SPOT flat z", "SUN flat z", "AREA flat x", "AREA flat y"}

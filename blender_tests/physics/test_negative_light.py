@@ -76,7 +76,7 @@ def test_negated_picture_under_settings(settings):
 
 
 def test_error_of_light_that_is_partly_taken_away():
-    """The told interval holds the true error, with pixels of both signs."""
+    """The reported interval contains the true error, with pixels of both signs."""
     record = snapshot("area", -1.0, samples=16)
     record = dataclasses.replace(record, world=(0.35, 0.35, 0.35))
     pictures, errors = [], []

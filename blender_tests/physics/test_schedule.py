@@ -1,4 +1,4 @@
-"""What a schedule asks of a session, and when it ends: on a session that renders nothing and whose errors are given."""
+"""The requests of a schedule, and its end, with a session that renders nothing and returns given errors."""
 
 import math
 from types import SimpleNamespace

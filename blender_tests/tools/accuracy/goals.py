@@ -13,7 +13,7 @@ def judge(scenes):
     targets = [run for scene in scenes.values() for run in scene["targets"]]
     if not even:
         return []
-    rows = [_coverage(even), _interval(even, "holds", "the interval holds the error"), _met(targets)]
+    rows = [_coverage(even), _interval(even, "holds", "error inside the interval"), _met(targets)]
     rows += [_whole(targets), _blocks(targets), _whole(even, "even samples, the control: "), _blocks(even, "even samples: ")]
     return rows
 
@@ -27,20 +27,20 @@ def _coverage(runs):
     by_scene = [np.mean(of) for of in ([s for s in run["inside"] if s is not None] for run in runs) if of]
     value = float(np.mean(by_scene))
     text = f"{100 * value:.2f} %, scenes from {100 * min(by_scene):.2f} to {100 * max(by_scene):.2f} %"
-    return Verdict("pixels inside their bar, of those with noise", "95 +- 1.5 %", text, abs(value - 0.95) <= 0.015)
+    return Verdict("noisy pixels inside their error bar", "95 +- 1.5 %", text, abs(value - 0.95) <= 0.015)
 
 
 def _interval(runs, key, what):
     held = [hit for run in runs for hit in run[key]]
     unmet = [hit for run in runs for hit in run["holds_with_unmet"]]
-    text = f"{100 * np.mean(held):.1f} % of {len(held)} pictures, {100 * np.mean(unmet):.1f} % with what cannot be excluded"
+    text = f"{100 * np.mean(held):.1f} % of {len(held)} pictures, {100 * np.mean(unmet):.1f} % with the bound on missed flashes"
     return Verdict(what, "at least 93 %", text, bool(np.mean(held) >= 0.93))
 
 
 def _met(runs):
     met = [error <= run["target"] for run in runs for error in run["real"]]
     scaled = sum(run["target"] > run["asked"] for run in runs)
-    text = f"{100 * np.mean(met):.1f} % of {len(met)} runs; {scaled} of {len(runs)} targets scaled up to what is affordable"
+    text = f"{100 * np.mean(met):.1f} % of {len(met)} runs; {scaled} of {len(runs)} targets scaled up to the allowed samples"
     return Verdict("target error met", "at least 95 %", text, bool(np.mean(met) >= 0.95))
 
 

@@ -6,11 +6,11 @@ from tools.harness import page, verdicts
 from tools.harness.page import element, percent
 
 _EVEN = ["scene", "samples", "reference: samples", "its share of the error's square", "pixels inside, of the noisy", "of all"]
-_EVEN += ["interval holds", "with what cannot be excluded", "told / real", "high / real"]
-_EVEN += ["real error", "bias z", "blocks beyond 4"]
-_TARGET = ["scene", "asked", "target", "met", "real error", "samples", "even samples would take", "bias", "bias z"]
+_EVEN += ["error inside interval", "with the bound on missed flashes", "reported / actual", "high / actual"]
+_EVEN += ["actual error", "bias z", "blocks beyond 4"]
+_TARGET = ["scene", "requested", "target", "met", "actual error", "samples", "even samples needed", "bias", "bias z"]
 _TARGET += ["blocks beyond 4", "reference's share"]
-_CYCLES = ["scene", "noise threshold", "real error: median", "least", "most", "share at or below the threshold"]
+_CYCLES = ["scene", "noise threshold", "actual error: median", "least", "most", "share at or below the threshold"]
 _CYCLES += ["bias", "bias z", "blocks beyond 4", "reference's share"]
 
 
@@ -22,22 +22,23 @@ def write(figures, folder):
         element("h2", "Even samples: bars and intervals"),
         page.table(_EVEN, [row for name, scene in scenes for row in _even(name, scene)]),
         element("h2", "Target errors"),
-        "A target that would take more samples than are affordable here is scaled up.",
+        "Targets that need more samples than this program allows are scaled up.",
         page.table(_TARGET, [_target(name, run) for name, scene in scenes for run in scene["targets"]]),
-        element("h2", "Cycles, noise threshold, for the record"),
-        "Its noise threshold is no promise of an error as defined here, and it tells neither bars nor intervals: what can be"
-        " measured is the error that its pictures have, against its own reference, and whether their mean is biased.",
+        element("h2", "Cycles, noise threshold, for comparison"),
+        "Cycles' noise threshold is not an error as defined here, and Cycles reports neither error bars nor intervals: the"
+        " table has the actual errors of its pictures against its own reference, and the bias of their mean.",
         page.table(_CYCLES, [row for name, scene in figures["cycles"].items() for row in _cycles(name, scene)]),
     ]
-    page.write(folder, "accuracy", figures, f"Is the error that renders tell true? {figures['commit']}", parts)
+    page.write(folder, "accuracy", figures, f"Is the error that renders report true? {figures['commit']}", parts)
 
 
 def describe(figures):
     plan, machine = figures["plan"], figures["machine"]
     text = f"{plan['seeds']} seeds a scene, {machine['processor']}; " + ("a short run; " if figures["quick"] else "")
     return text + (
-        "error: root mean square over pixels of (luminance - truth) / (truth + 1 % of its mean), less the reference's own"
-        " noise, which is added to bars. z: the mean of all pictures against the reference, with both standard errors."
+        "error: root mean square over pixels of (luminance - truth) / (truth + 1 % of its mean), less the noise of the"
+        " reference, which is added to error bars. z: difference of the mean of all pictures from the reference in standard"
+        " errors of both."
     )
 
 

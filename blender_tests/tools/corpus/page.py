@@ -34,7 +34,7 @@ def write(figures, folder):
         lines((element("button", text, data_verdict=verdict) for verdict, text in buttons.items()), ""),
         page.table(*_means(found["means"], wide=True)),
         page.table(
-            ["what is missing", "files made right, given all before", "in all", "files that have it", "uses"],
+            ["missing feature", "files made right, given all before", "total", "files that use it", "uses"],
             [[row[name] for name in ("key", "completes", "total", "files", "uses")] for row in found["missing"]],
         )
         if found["missing"]

@@ -162,7 +162,7 @@ def main():
             told = ", ".join(f"{name} {found[name]:.2f}x" for name in ("speed", "variance", "efficiency", "least_efficiency"))
             print(f"{title}: {told.replace('_', ' ')}")
     for row in figures["summary"]["missing"]:
-        print(f"{row['key']}: {row['completes']} made right, {row['total']} in all; {row['files']} files have it")
+        print(f"{row['key']}: {row['completes']} files made right, {row['total']} in total; {row['files']} files use it")
     if arguments.readme:
         page.update_tables(figures)
     print(os.path.relpath(arguments.output / "index.html"))

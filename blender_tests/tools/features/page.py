@@ -2,10 +2,10 @@
 
 from tools.harness import page, verdicts
 
-_TOLD = """A minimal scene, a matt ball on a matt floor under a point lamp, and one feature more at a time. Used: on the ball,
-the lamp, the sky, the camera or in the settings; how much longer the same samples take. Only compiled in: the same scene, in
-which an object behind the camera, a lamp below the floor or a sky that no ray may see has the feature, so that its code is
-there and is not needed. Figures are medians with their 95 % intervals."""
+_TOLD = """A minimal scene, a diffuse ball on a diffuse floor under a point lamp, with one feature at a time. Used: the ball,
+the lamp, the sky, the camera or the settings have the feature. Only compiled in: an object behind the camera, a lamp below the
+floor or a sky that is hidden from all rays has it, so that its code is compiled in but does not run. Figures are the extra time
+for the same samples: medians with their 95 % intervals."""
 _HEAD = ["feature", "PATH: used", "only compiled in", "", "kernel", "CLASSIC: used", "only compiled in", ""]
 
 

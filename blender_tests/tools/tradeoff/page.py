@@ -22,25 +22,24 @@ def caption(figures):
     ours, theirs, apart = figures["reference"], figures["cycles_reference"], figures["apart"]
     width, height = figures["size"]
     yield (
-        f"{figures['scene']}, {width} x {height}, {figures['bounces']} bounces, box filter, nothing clamped, denoised or "
-        f"stopped early but the presets; medians of {figures['seeds']} seeds, the longest of one. Bands: least to greatest."
+        f"{figures['scene']}, {width} x {height}, {figures['bounces']} bounces, box filter, no clamping, no denoising; only "
+        f"the presets end at a target error. Medians of {figures['seeds']} seeds, one for the longest; bands: least to most."
     )
     yield (
-        f"Errors are against converged pictures of other seeds: PATH at {ours['samples']} samples, itself off by "
-        f"{percent(ours['error'])}, and for Cycles its own at {theirs['samples']}, off by {percent(theirs['error'])}. What the "
-        "reference is off is subtracted, in squares."
+        f"Errors are against converged pictures of other seeds: PATH's at {ours['samples']} samples, with an error of "
+        f"{percent(ours['error'])}, and for Cycles its own at {theirs['samples']}, with an error of {percent(theirs['error'])}."
+        " The reference's error is subtracted, in squares."
     )
     yield (
         f"The two references differ by {percent(apart['median'])} of the picture's level in the median square of 8 x 8 pixels: "
-        "each engine is measured against the picture that it itself converges to."
+        "each engine is compared with the picture that it converges to."
     )
     yield (
-        "CLASSIC and NORMALS answer another question than PATH, without light that bounces: their distance to PATH's reference "
-        "levels off where their noise ends, and so does that of meshes in place of exact shapes, of which Cycles renders the "
-        "meshes, too."
+        "CLASSIC and NORMALS compute another picture than PATH, without indirect light: their error against PATH's reference "
+        "levels off, and so does that of meshes in place of exact shapes; Cycles also renders the meshes."
     )
-    yield "Seconds are those of rendering alone; the table has those before."
-    yield "There is no choice of precision: the renderer has one, so float and double are not compared."
+    yield "Seconds are those of rendering alone; a table has the seconds before the first sample."
+    yield "Lancer has only one precision, so float and double are not compared."
 
 
 def tables(figures):
@@ -80,7 +79,7 @@ def presets_table(figures):
         "samples, on average",
         "seconds",
         "error against the reference",
-        "as it tells",
+        "reported error",
         "ended by",
     ]
     return head, rows
