@@ -22,6 +22,7 @@ _TYPES = {
     "BOOLEAN": ("value", bool, 1),
     "FLOAT2": ("vector", np.float32, 2),
     "FLOAT_VECTOR": ("vector", np.float32, 3),
+    "FLOAT4": ("vector", np.float32, 4),
     "FLOAT_COLOR": ("color", np.float32, 4),
     "BYTE_COLOR": ("color", np.float32, 4),
     "QUATERNION": ("value", np.float32, 4),

@@ -9,6 +9,7 @@ from .boards import output_of, set_board, size_of, tile_mesh, uneven
 from .catalogue import case, variants
 
 _TYPES = [item.identifier for item in bpy.types.Attribute.bl_rna.properties["data_type"].enum_items]
+_LENGTHS = {"FLOAT2": 2, "FLOAT_VECTOR": 3, "FLOAT4": 4}
 _OUTPUTS = ("Color", "Vector", "Fac", "Alpha")
 _ATTRIBUTE, _COLOR, _MAP = "ShaderNodeAttribute", "ShaderNodeVertexColor", "ShaderNodeUVMap"
 
@@ -36,8 +37,8 @@ def _with_attribute(kind, domain):
     for index, item in enumerate(mesh.attributes.new("Given", kind, domain).data):
         if kind in ("FLOAT_COLOR", "BYTE_COLOR"):
             item.color = uneven(index, 4)
-        elif kind in ("FLOAT_VECTOR", "FLOAT2"):
-            item.vector = uneven(index, 3 if kind == "FLOAT_VECTOR" else 2)
+        elif kind in _LENGTHS:
+            item.vector = uneven(index, _LENGTHS[kind])
         else:
             item.value = _value(kind, index)
     return mesh
