@@ -27,6 +27,8 @@ _TYPES = {
     "BYTE_COLOR": ("color", np.float32, 4),
     "QUATERNION": ("value", np.float32, 4),
 }
+# Since 5.0 a triangle across the seam of the spherical map is not stretched over all of it.
+_JOINS_SEAM = bpy.app.version >= (5, 0)
 if bpy.app.version >= (4, 1):
     _TYPES["INT8"] = ("value", np.int32, 1)
 
@@ -89,6 +91,9 @@ def _tangents(mesh, data, name, corners, poll):
         uvs = _at_corners(read_uv_map(layer), corners).reshape(-1, 3, 2)
     elif _is_spherical(mesh, name):
         uvs = _spherical(_undeformed(mesh))[data.triangles]
+        if _JOINS_SEAM:
+            u = uvs[..., 0]
+            u[(np.ptp(u, axis=1, keepdims=True) > 0.5) & (u < 0.5)] += 1.0
     else:
         return None
     return MeshAttribute(name, corner_tangents(data.positions, data.triangles, data.normals, uvs, poll), Domain.CORNER)

@@ -4,6 +4,7 @@ with texels that are not finite."""
 import bpy
 import numpy as np
 
+from .. import parts
 from . import image_files, images
 from .boards import output_of, set_board, size_of, tile_mesh, uneven
 from .catalogue import case, variants
@@ -124,6 +125,32 @@ def _map_tiles():
 def maps_by_name(scene):
     """UV Map and Attribute, by names that are empty, missing and given, of maps and of colours."""
     set_board(scene, _map_tiles())
+
+
+def _plain_ball():
+    """Without a UV map, off its own origin and stretched."""
+    mesh = parts.sphere_mesh("Ball", 24, 16, 0.4)
+    for layer in list(mesh.uv_layers):
+        mesh.uv_layers.remove(layer)
+    for vertex in mesh.vertices:
+        x, y, z = vertex.co
+        vertex.co = x + 0.1, y - 0.05, 1.3 * z + 0.2
+    return mesh
+
+
+@case("EXACT", size=size_of(4), bounces=0, quick=True)
+def tangents_without_maps(scene):
+    """Round the z axis of the mesh as it was before modifiers."""
+    ball = _plain_ball()
+    tangent = ("ShaderNodeTangent", "Tangent", {"direction_type": "UV_MAP"})
+    mapped = ("ShaderNodeNormalMap", "Normal", {"space": "TANGENT"})
+    tiles = [
+        (ball, output_of(*tangent)),
+        (ball, output_of(*mapped, Color=(0.8, 0.4, 0.9))),
+        (ball, output_of(*mapped, Color=(0.3, 0.9, 0.7))),
+        (_painted(("Paint", "FLOAT_COLOR", "POINT"), has_map=False), output_of(*mapped, Color=(0.8, 0.4, 0.9))),
+    ]
+    set_board(scene, tiles)
 
 
 def _picture_with_gaps(kind, channels, number):
