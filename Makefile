@@ -47,7 +47,7 @@ logged = $(2) >$(1) 2>&1 || { cat $(1); exit 1; }
 platforms := linux-x64 linux-arm64 windows-x64 macos-arm64 macos-x64
 zig = $(realpath $(wildcard build/zig/lib/python3*/site-packages/ziglang/zig))
 
-.PHONY: build render test test-slow test-platforms mutants bench accuracy tradeoff features parity differ corpus course sanitize fuzz addon addons bindings format clean help
+.PHONY: build render test test-slow test-platforms mutants bench accuracy tradeoff features pilot parity differ corpus course sanitize fuzz addon addons bindings format clean help
 .PHONY: packages-build packages-run packages-test packages-fuzz packages-format packages-platforms packages-bench
 .PHONY: ready-run ready-test python-run python-test python-dev python-bench python-charts python-zig core-configured core-programs core-tests
 
@@ -120,6 +120,9 @@ endif
 
 features: packages-run python-run build ## measure the cost of each feature, used and unused: make features [QUICK=1] [ONLY=glass]
 	@$(python) $(tools) features.run $(if $(QUICK),--quick) $(if $(ONLY),--only '$(ONLY)')
+
+pilot: packages-run python-run build ## fit the pilot's cost model to measured times: make pilot [QUICK=1] [ONLY='glass*']
+	@$(python) $(tools) pilot.run $(if $(QUICK),--quick) $(if $(ONLY),--only '$(ONLY)')
 
 tradeoff: packages-run python-charts build ## measure error against time: make tradeoff [BLEND=file.blend] [SAMPLES=n] [OUT=folder] [QUICK=1] [README=1]
 	@$(python) $(tools) tradeoff.run $(if $(BLEND),--blend "$(BLEND)") $(if $(SAMPLES),--samples $(SAMPLES)) \

@@ -1,6 +1,7 @@
 #include "render/pilot.h"
 
 #include "lancer.h"
+#include "render/pilot_model.h"
 #include "sampling/color.h"
 
 #include <algorithm>
@@ -12,28 +13,8 @@ namespace lancer {
 
 namespace {
 
-// Samples of each pixel of the pilot. The variance of two paths over that of one is 0.47 to 0.54 in pictures of 64 samples (six
-// public files). A pilot of 32 samples reports 0.42 to 0.77; one of 16 samples reports 0.52 to 1.06 and so underestimates the
-// gain of splitting.
-constexpr uint32_t kSamples = 32;
+constexpr uint32_t kSamples = kPilot.samples;
 constexpr uint32_t kBatch = 1024;
-// Samples of the picture for each pixel of the pilot. The pilot lengthens a render by 1 to 9 % (64 samples, seven public
-// files), and by 18 % where the render takes 0.05 s.
-constexpr double kSamplesEach = 4096.0;
-constexpr uint32_t kFewest = 128, kMostPixels = 1024;
-// Number of pixels with noise that the pilot searches for, and the largest number of sets of pixels that it renders to find
-// them.
-constexpr size_t kFewestNoisy = 160;
-constexpr uint32_t kLooks = 16;
-constexpr uint32_t kMost = 8;
-// Another split must lower variance times cost below this factor: a smaller gain only delays the first pictures.
-constexpr double kWorth = 0.95;
-// Share of the pixels, the noisiest ones, whose noise is clamped to the smallest value among them: so few samples contain too
-// few bright flashes to estimate their variance.
-constexpr double kNoisiest = 0.005;
-// Costs of a camera ray, of a bounce or shadow ray, and of a vertex, fitted to the times of 26 public files split in four ways
-// each. They predict these times within 10 % (one standard deviation). Integers have the same sum in any order.
-constexpr uint64_t kCameraRay = 4, kRay = 20, kVertex = 15;
 
 // Returns places that fill the unit square evenly for any count: multiples of the powers of the plastic number (Roberts, "The
 // unreasonable effectiveness of quasirandom sequences", 2018).
@@ -47,11 +28,7 @@ float level_of(const SampleResult &result) {
   return std::isfinite(level) ? level : 0.0f;
 }
 
-uint64_t cost_of(const Integrator &integrator) {
-  const RayCounts &rays = integrator.counts();
-  const VertexCounts &vertices = integrator.vertices();
-  return kCameraRay * rays.camera + kRay * (rays.bounce + rays.shadow) + kVertex * (vertices.wide + vertices.narrow);
-}
+uint64_t cost_of(const Integrator &integrator) { return kPilot.cost.of(integrator.counts(), integrator.vertices()); }
 
 } // namespace
 
@@ -104,10 +81,10 @@ void Pilot::search() {
   bool lights = is_better(by_lights, by_paths, 1.0);
   for (uint32_t failed = 0; failed < 2 && !settings_.cancelled();) {
     const Splits next = doubled(lights);
-    bool pays = std::max(next.lights, next.paths) <= kMost && !(lights && scene_.lights.empty());
+    bool pays = std::max(next.lights, next.paths) <= kPilot.most_splits && !(lights && scene_.lights.empty());
     if (pays) {
       Look found = best_ == Splits() ? (lights ? by_lights : by_paths) : look(next);
-      pays = is_better(found, best, kWorth);
+      pays = is_better(found, best, kPilot.gain);
       if (pays) {
         best = std::move(found);
         best_ = next;
@@ -122,12 +99,14 @@ void Pilot::search() {
 // Chooses pixels with noise from the whole image. Returns the measurement of the picture without splits.
 Pilot::Look Pilot::find_pixels() {
   const double planned = double(camera_.width) * camera_.height * settings_.samples;
-  const auto wanted = std::bit_floor(uint32_t(std::clamp(planned / kSamplesEach, double(kFewest), double(kMostPixels))));
+  const auto wanted = std::bit_floor(
+      uint32_t(std::clamp(planned / kPilot.samples_per_pixel, double(kPilot.fewest_pixels), double(kPilot.most_pixels))));
   Look plain;
   double sum = 0.0;
   uint32_t looked_at = 0;
   uint64_t traced = 0;
-  while (looked_at == 0 || (pixels_.size() < kFewestNoisy && looked_at < kLooks * wanted && !settings_.cancelled())) {
+  while (looked_at == 0 ||
+         (pixels_.size() < kPilot.fewest_noisy && looked_at < kPilot.most_rounds * wanted && !settings_.cancelled())) {
     std::vector<Pixel> some;
     // Keep the order of all pixels, so that the sum is the same whether empty pixels are traced or not.
     std::vector<double> levels(wanted, level_of(background_.sample));
@@ -155,9 +134,8 @@ Pilot::Look Pilot::find_pixels() {
   }
   looks_ = 1;
   darkest_ = std::max(0.01 * sum / looked_at, 1e-30);
-  // Pixels without noise mostly show the background and cost one camera ray per sample. The picture does not trace an even
-  // background.
-  const uint64_t cost_of_rays = kCameraRay * kSamples * (traced - pixels_.size());
+  // The other pixels mostly show the background at the cost of a camera ray; an even background is not traced by the picture.
+  const uint64_t cost_of_rays = kPilot.cost.camera_ray * kSamples * (traced - pixels_.size());
   if (has_even_background(scene_, camera_))
     plain.cost -= cost_of_rays;
   else
@@ -192,7 +170,7 @@ bool Pilot::is_better(const Look &look, const Look &than, double by) const {
   for (size_t i = 0; i < pixels_.size(); ++i)
     for (const Look *of : {&look, &than})
       both.push_back(relative(*of, i));
-  const auto limit = both.begin() + ptrdiff_t((1.0 - kNoisiest) * double(both.size()));
+  const auto limit = both.begin() + ptrdiff_t((1.0 - kPilot.clamped) * double(both.size()));
   std::nth_element(both.begin(), limit, both.end());
   const auto product = [&](const Look &of) {
     double variance = 0.0;

@@ -1,0 +1,1 @@
+"""`make pilot`: fits the pilot's model of costs to measured times."""
