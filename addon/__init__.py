@@ -33,12 +33,20 @@ def register():
     from .engine import preview, render_engine, render_job, results
     from .host import main_thread
     from .host.registering import add_all
-    from .operators import bug_report, check_scene, course_groups, measure_features, measure_quality, measuring
+    from .operators import (
+        bug_report,
+        check_scene,
+        course_groups,
+        measure_features,
+        measure_quality,
+        measuring,
+        take_over_cycles,
+    )
     from .settings import manual, preferences, presets, properties
     from .viewport import viewport
 
     modules = (properties, preferences, main_thread, results, render_engine, measuring)
-    modules += (measure_features, measure_quality, check_scene, course_groups, presets)
+    modules += (measure_features, measure_quality, check_scene, course_groups, take_over_cycles, presets)
     # render_job unregisters first: it ends a running render while the rest of the add-on is still registered.
     modules += (ui, bug_report, manual, viewport, preview, render_job)
     add_all(modules, lambda module: module.register(), lambda module: module.unregister())

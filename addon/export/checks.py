@@ -14,6 +14,9 @@ _PASSES_HERE = {f"{component}_{part}" for component in _COMPONENTS for part in (
 }  # fmt: skip
 # A switch without an image of its own, and a pass that Blender itself draws.
 _NO_PASSES = {"cryptomatte_accurate", "grease_pencil"}
+# Passes that measure Cycles' own work, and switches of its passes for denoising, which are on by default.
+_OF_CYCLES_WORK = ("pass_debug_sample_count", "pass_render_time")
+_GUIDES_SHAPED_BY = ("denoising_pass_follow_reflections", "denoising_pass_use_albedo_roughness_weighting")
 # Passes that stay black with an integrator in every scene.
 _LIT = {Pass[f"{component}_{part}".upper()] for component in _COMPONENTS for part in ("direct", "indirect")}
 EMPTY_PASSES = {
@@ -28,13 +31,13 @@ _HAS_CATCHER = "is_shadow_catcher" in _OF_OBJECTS
 _HAS_OFFSET = "shadow_terminator_shading_offset" in _OF_OBJECTS
 
 
-def check_scene(scene, messages):
+def check_scene(scene, messages, in_view=False):
     who = f"scene '{scene.name}'"
     if scene.render.use_motion_blur:
         messages.add(f"{who}: motion blur is not supported, the frame is rendered sharp", "feature:motion blur")
     if scene.render.use_multiview:
         messages.add(f"{who}: stereoscopy is not supported, every view shows the scene's camera", "feature:stereoscopy")
-    check_cycles(scene, messages)
+    check_cycles(scene, messages, in_view)
 
 
 def check_passes(scene, passes, messages):
@@ -53,6 +56,12 @@ def check_view_layer(scene, view_layer, messages):
     names = _missing_passes(view_layer)
     if names:
         messages.add(f"{who}: these passes are not supported: {', '.join(names)}", severity=Severity.LEFT_OUT)
+    cycles = getattr(view_layer, "cycles", None)
+    if getattr(cycles, "denoising_store_passes", False):
+        for name in _GUIDES_SHAPED_BY:
+            if not getattr(cycles, name, True):
+                title = cycles.bl_rna.properties[name].name
+                messages.add(f"{who}: passes for denoising without {title} are not supported, they are rendered with it")
 
 
 def _missing_passes(view_layer):
@@ -65,7 +74,9 @@ def _missing_passes(view_layer):
                 continue
             if getattr(owner, field.identifier) and field.name not in names:
                 names.append(field.name)
-    if bpy.app.version >= (5, 2) and getattr(getattr(view_layer, "cycles", None), "denoising_store_passes", False):
+    cycles = getattr(view_layer, "cycles", None)
+    names += [cycles.bl_rna.properties[name].name for name in _OF_CYCLES_WORK if getattr(cycles, name, False)]
+    if bpy.app.version >= (5, 2) and getattr(cycles, "denoising_store_passes", False):
         names += ["Denoising Specular Albedo", "Denoising Roughness"]
     names += [f"AOV '{aov.name}'" for aov in view_layer.aovs]
     return names + [f"light group '{group.name}'" for group in view_layer.lightgroups]

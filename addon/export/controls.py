@@ -34,6 +34,7 @@ CONTROLS = (
     Controls("RenderSettings", ("resolution_x", "resolution_y", "resolution_percentage", "pixel_aspect_x", "pixel_aspect_y")),
     Controls("RenderSettings", ("use_border", "film_transparent", "threads_mode", "threads")),
     Controls("RenderSettings", ("use_simplify", "simplify_subdivision")),
+    Controls("CyclesRenderSettings", ("film_transparent_glass", "film_transparent_roughness")),
     Controls("ViewLayer", ("use_sky", "use_solid", "material_override", "samples", "pass_alpha_threshold", *_PASSES)),
     Controls("ViewLayer", ("world_override",), since=(4, 2)),
     Controls("CyclesRenderLayerSettings", ("denoising_store_passes", "use_denoising")),

@@ -1,8 +1,8 @@
 """Messages about Cycles' settings of a scene that change its light and that Lancer does not follow.
 
-One message reports all limits of Cycles' light paths that differ from Lancer's. They differ by default: the message is a hint
-while all of Cycles' limits are Blender's defaults. Each other setting is reported if it differs from its default. Settings with
-a counterpart in Lancer (samples, filter, seed, transparent bounces) and those that change only noise and time are not read.
+One message reports all limits of Cycles' light paths that differ from Lancer's, another the pixel filter. Limits differ by
+default: the message is a hint while all of Cycles' settings in it are Blender's defaults. Each other setting is reported if it
+differs from its default. Settings that change only noise and time are not read; cycles_properties.py lists all settings.
 """
 
 from ..messages.severity import Severity
@@ -10,21 +10,27 @@ from ..messages.severity import Severity
 _KINDS = ("diffuse", "glossy", "transmission")
 
 
-def check_cycles(scene, messages):
+# A Gaussian of Cycles' width w has the standard deviation w / 4, its Blackman-Harris window 0.27702 w: at this share of the
+# width both blur equally.
+_GAUSSIAN_WIDTH = 0.25 / 0.27702
+_FILTERS = {"BOX": "Box", "GAUSSIAN": "Gaussian", "BLACKMAN_HARRIS": "Blackman-Harris"}
+
+
+def check_cycles(scene, messages, in_view=False):
+    """Report a scene's settings. in_view: of a 3D view, which has limits of Simplify of its own."""
     # Cycles is an add-on and may be disabled.
     cycles = getattr(scene, "cycles", None)
     if cycles is None:
         return
-    for text, severity in _light_paths(scene.lancer, cycles):
-        messages.add(f"scene '{scene.name}': {text}", severity=severity)
-    for text in (*_light(cycles), *_simplified(scene, cycles)):
+    # The other integrators are not meant to match Cycles.
+    if scene.lancer.integrator == "PATH":
+        for text, severity in (*_light_paths(scene.lancer, cycles), *_pixel_filter(scene.lancer, cycles)):
+            messages.add(f"scene '{scene.name}': {text}", severity=severity)
+    for text in (*_light(cycles), *_simplified(scene, cycles, in_view)):
         messages.add(f"scene '{scene.name}': {text}")
 
 
 def _light_paths(own, cycles):
-    # The other integrators are not meant to match Cycles.
-    if own.integrator != "PATH":
-        return
     # (Setting, text) of each limit that Lancer does not apply.
     theirs = [("max_bounces", f"Total {cycles.max_bounces}")] if cycles.max_bounces != own.max_bounces else []
     # A limit of one kind has no effect if it is not below the limit of all bounces.
@@ -33,17 +39,47 @@ def _light_paths(own, cycles):
         limit = getattr(cycles, f"{kind}_bounces")
         if limit < deepest:
             theirs.append((f"{kind}_bounces", f"{kind.capitalize()} {limit}"))
+    # Cycles has one more than Lancer's largest number.
+    layers = min(cycles.transparent_max_bounces, own.bl_rna.properties["transparent_bounces"].hard_max)
+    if layers != own.transparent_bounces:
+        theirs.append(("transparent_max_bounces", f"Transparent {layers}"))
     if cycles.blur_glossy > 0.0:
         theirs.append(("blur_glossy", f"Filter Glossy {cycles.blur_glossy:g}"))
     if cycles.sample_clamp_indirect > 0.0 and cycles.sample_clamp_indirect != own.clamp_indirect:
         theirs.append(("sample_clamp_indirect", f"Clamp Indirect {cycles.sample_clamp_indirect:g}"))
     ours = [f"Max Bounces {own.max_bounces}"]
+    if layers != own.transparent_bounces:
+        ours.append(f"Transparent {own.transparent_bounces}")
     if own.clamp_indirect > 0.0:
         ours.append(f"Clamp Indirect {own.clamp_indirect:g}")
     if theirs:
         told = _listed([words for _, words in theirs])
         severity = Severity.DIFFERENT if any(_changed(cycles, name) for name, _ in theirs) else Severity.HINT
         yield f"Cycles limits light by {told}, Lancer by {_listed(ours)}: set Light Paths alike to compare", severity
+
+
+def filter_of(cycles):
+    """Return Lancer's (pixel_filter, filter_width) for Cycles' pixel filter; the width is None if it has no effect."""
+    kind = cycles.pixel_filter_type
+    if kind == "BOX":
+        return kind, None
+    return "BLACKMAN_HARRIS", cycles.filter_width * (_GAUSSIAN_WIDTH if kind == "GAUSSIAN" else 1.0)
+
+
+def _pixel_filter(own, cycles):
+    kind, width = filter_of(cycles)
+    # Single precision keeps seven digits of a width.
+    if own.pixel_filter == kind and (width is None or abs(own.filter_width - width) <= 1e-5 * width):
+        return
+    theirs, ours = (
+        f"{_FILTERS[name]}" + (f" {size:g}" if name != "BOX" else "")
+        for name, size in ((cycles.pixel_filter_type, cycles.filter_width), (own.pixel_filter, own.filter_width))
+    )
+    changed = _changed(cycles, "pixel_filter_type") or _changed(cycles, "filter_width")
+    yield (
+        f"Cycles' pixel filter is {theirs}, Lancer's is {ours}: set Film alike to compare",
+        Severity.DIFFERENT if changed else Severity.HINT,
+    )
 
 
 def _listed(words):
@@ -61,13 +97,16 @@ def _light(cycles):
     for name in ("reflective", "refractive"):
         if not getattr(cycles, f"caustics_{name}"):
             yield f"Cycles' {name} caustics are off, which is not supported, Lancer shows them"
+    if getattr(cycles, "use_pixel_jitter", False):
+        yield "Cycles' Pixel Jitter is not supported, samples are spread over the pixel"
 
 
-def _simplified(scene, cycles):
+def _simplified(scene, cycles, in_view):
     render = scene.render
     if not render.use_simplify:
         return
-    for name, title in (("texture_limit_render", "Texture Limit"), ("texture_resolution_render", "Texture Resolution")):
+    end = "" if in_view else "_render"
+    for name, title in ((f"texture_limit{end}", "Texture Limit"), (f"texture_resolution{end}", "Texture Resolution")):
         if name in cycles.bl_rna.properties and _changed(cycles, name):
             yield f"Simplify's {title} is not supported, pictures are used in full size"
     # Cycles never culls for stereo and panoramic cameras.

@@ -47,7 +47,7 @@ def export_scene(depsgraph, options=None, poll=None):
     world = _evaluated(getattr(view_layer, "world_override", None) or scene.world, depsgraph)
     override = _evaluated(view_layer.material_override, depsgraph)
     settings = export_settings(depsgraph, options.passes, world, messages)
-    check_scene(scene, messages)
+    check_scene(scene, messages, in_view=options.view is not None)
     check_passes(scene, options.passes, messages)
     check_view_layer(scene, view_layer, messages)
     parts = options.parts

@@ -13,11 +13,19 @@ _DEEPEST_RECURSION = 16
 _MIST_FALLOFFS = {"QUADRATIC": 2.0, "LINEAR": 1.0, "INVERSE_QUADRATIC": 0.5}
 
 
+def glass_owner(scene):
+    """Return the owner of the film_transparent_* settings in use: Cycles, unless Lancer's are set or Cycles is disabled."""
+    own, cycles = scene.lancer, getattr(scene, "cycles", None)
+    names = ("film_transparent_glass", "film_transparent_roughness")
+    return own if cycles is None or any(own.is_property_set(name) for name in names) else cycles
+
+
 def export_settings(depsgraph, passes, world, messages):
     """Return the snapshot.Settings of a depsgraph. passes: of enums.Pass; world: the evaluated world, or None."""
     scene = depsgraph.scene
     own = scene.lancer
     render = scene.render
+    glass = glass_owner(scene)
     who = f"scene '{scene.name}'"
     seed = own.seed + (scene.frame_current if own.use_animated_seed else 0)
     bounces = own.max_bounces
@@ -40,9 +48,9 @@ def export_settings(depsgraph, passes, world, messages):
         # As in Cycles, the window reaches the filter width to each side.
         filter_width=2.0 * own.filter_width if own.pixel_filter == "BLACKMAN_HARRIS" else 1.0,
         film_transparent=render.film_transparent,
-        transparent_glass=own.film_transparent_glass,
+        transparent_glass=glass.film_transparent_glass,
         # The setting is a roughness in the units of shader nodes: alpha is its square.
-        glass_roughness=messages.number(own.film_transparent_roughness, who, "glass roughness", 0.1, 0.0, 1.0) ** 2,
+        glass_roughness=messages.number(glass.film_transparent_roughness, who, "glass roughness", 0.1, 0.0, 1.0) ** 2,
         # Before 5.0 Cycles lets paths pass one more transparent surface than shadow rays; since then, at least one.
         transparent_bounces=own.transparent_bounces + 1 if bpy.app.version < (5, 0) else max(1, own.transparent_bounces),
         transparent_shadows=own.transparent_bounces,

@@ -42,6 +42,9 @@ def export_world(world, images, depsgraph, messages):
             f"{who}: Sampling None is not supported, Auto is used; behind objects that cast no shadow it is brighter",
             "feature:sky that is not sampled",
         )
+    # An even sky is not sampled as a light in Cycles, and casts shadows in any case.
+    elif not getattr(cycles, "use_shadows", True) and isinstance(radiance, snapshot.NodeRef):
+        messages.add(f"{who}: a sky that casts no shadows is not supported, it casts them", "feature:sky without shadows")
     sky = snapshot.World(
         radiance=radiance,
         ambient=messages.color(own.ambient_color, who, "ambient colour") if own.use_ambient_color else None,

@@ -1,1 +1,1 @@
-"""Operators: measure, check, save a bug report, add the course's node groups."""
+"""Operators: measure, check, save a bug report, add the course's node groups, take over Cycles' settings."""

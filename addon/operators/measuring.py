@@ -12,6 +12,7 @@ from bpy.app.handlers import persistent
 from ..bindings.abi import LancerError
 from ..bindings.session import Cancelled
 from ..engine import render_export
+from ..export.settings import glass_owner
 from ..host import by_scene, priority, redraw
 
 # (operator's bl_idname, fraction, text) of the running work, by scene.
@@ -33,8 +34,6 @@ _OWN = (
     "clamp_indirect",
     "pixel_filter",
     "filter_width",
-    "film_transparent_glass",
-    "film_transparent_roughness",
     "accelerator",
     "features",
 )
@@ -201,6 +200,8 @@ def state(scene):
     border = (render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y) if render.use_border else ()
     shape = render.resolution_x / render.resolution_y, render.pixel_aspect_x / render.pixel_aspect_y, *border
     values = [getattr(own, name) for name in _OWN] + [getattr(render, name) for name in _RENDER]
+    glass = glass_owner(scene)
+    values += [glass.film_transparent_glass, glass.film_transparent_roughness]
     return (_changes.get(scene, 0), *values, *shape, scene.camera.name if scene.camera else "", scene.frame_current)
 
 

@@ -4,7 +4,8 @@ import bpy
 from bl_ui.properties_grease_pencil_common import GreasePencilSimplifyPanel
 
 from ..denoise import view_layer as denoise
-from ..operators import measure_quality, measuring
+from ..export.settings import glass_owner
+from ..operators import measure_quality, measuring, take_over_cycles
 from ..settings import presets
 from .panel import LancerPanel, setting, uses_classic
 from .sentences import sentence
@@ -41,7 +42,16 @@ class LANCER_RENDER_PT_sampling(LancerRenderPanel, bpy.types.Panel):
         column.prop(settings, "target_error")
         column.prop(settings, "samples", text="Samples" if settings.target_error == 0.0 else "Max Samples")
         column.prop(settings, "time_limit")
+        _draw_take_over(self.layout.column(align=True), context)
         _draw_forecast(self.layout.column(align=True), context)
+
+
+def _draw_take_over(column, context):
+    """A button that makes Lancer's settings those of Cycles, as long as any differs."""
+    changes = take_over_cycles.differing(context.scene)
+    if changes:
+        column.operator(take_over_cycles.LANCER_OT_take_over_cycles.bl_idname, icon="IMPORT")
+        sentence(column, context, f"Changes {', '.join(take_over_cycles.titles(context.scene, changes))}")
 
 
 def _draw_forecast(column, context):
@@ -230,13 +240,13 @@ class LANCER_RENDER_PT_transparent(LancerRenderPanel, bpy.types.Panel):
         self.layout.prop(context.scene.render, "film_transparent", text="")
 
     def draw(self, context):
-        settings = context.scene.lancer
+        owner = glass_owner(context.scene)
         column = self._column()
         column.active = context.scene.render.film_transparent
-        column.prop(settings, "film_transparent_glass")
+        column.prop(owner, "film_transparent_glass")
         row = column.row()
-        row.active = settings.film_transparent_glass
-        row.prop(settings, "film_transparent_roughness", text="Max Roughness")
+        row.active = owner.film_transparent_glass
+        row.prop(owner, "film_transparent_roughness", text="Max Roughness")
 
 
 class LANCER_RENDER_PT_performance(LancerRenderPanel, bpy.types.Panel):

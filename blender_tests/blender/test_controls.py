@@ -27,6 +27,8 @@ ELSEWHERE = {
 OF_OTHERS = {
     "blocker_collection": "light linking, told as not supported",
     "data": "the data-block itself",
+    "denoising_pass_follow_reflections": "told as not supported, with passes for denoising",
+    "denoising_pass_use_albedo_roughness_weighting": "told as not supported, with passes for denoising",
     "denoiser": "of the library that denoises",
     "exposure": "of lamps; of the display in Blenders whose lamps have none",
     "extend": "a list's method; of curves' display",
@@ -42,13 +44,17 @@ OF_OTHERS = {
     "metallic": "a socket of a shader node",
     "receiver_collection": "light linking, told as not supported",
     "shadow_terminator_offset": "told as not supported, in the Blenders that keep it in Cycles",
+    "texture_limit": "told as not supported, in views",
+    "texture_resolution": "told as not supported, in views",
     "use_adaptive_subdivision": "told as not supported, with a modifier",
     "use_custom_distance": "told as not supported before 4.2",
     "use_shadow": "acts before 4.2 where the Cycles add-on is off",
+    "use_shadows": "of a sky that varies, told as not supported; of EEVEE",
 }
-# The export, and the other files that read settings of passes.
+# The export, without its list of all of Cycles' settings, and the other files that read settings of passes.
 ADDON = pathlib.Path(ROOT, "addon")
-READERS = (*ADDON.glob("export/*.py"), ADDON / "engine" / "passes.py", ADDON / "denoise" / "view_layer.py")
+EXPORT = sorted({*ADDON.glob("export/*.py")} - {ADDON / "export" / "cycles_properties.py"})
+READERS = (*EXPORT, ADDON / "engine" / "passes.py", ADDON / "denoise" / "view_layer.py")
 
 
 @pytest.fixture(scope="module", params=[MODULE, PROGRAM])

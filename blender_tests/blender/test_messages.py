@@ -73,7 +73,7 @@ def test_light_paths_that_differ_are_told_in_one_line(case):
 def test_settings_of_cycles_without_counterpart(case):
     got = case("settings", "setting_cases")
     assert got["alike"] == got["neutral"] == got["simplify"] == got["nobody culled"] == got["panorama"] == []
-    assert len(got["words"]) == 12
+    assert len(got["words"]) == 15
     for word, lines in got["words"].items():
         assert len(lines) == 1 and word in lines[0] and lines[0].startswith("scene 'Scene'"), (word, lines)
 

@@ -89,7 +89,7 @@ def acting(scene, view_layer, owners, depth):
         values = other_values(owner, field)
         if not values:
             continue
-        kept = getattr(owner, field.identifier)
+        kept, was_set = getattr(owner, field.identifier), owner.is_property_set(field.identifier)
         kept = tuple(kept) if getattr(field, "is_array", False) else kept
         for value in values:
             try:
@@ -104,6 +104,9 @@ def acting(scene, view_layer, owners, depth):
             if after[1] != before[1]:
                 tells.add(key)
         setattr(owner, field.identifier, kept)
+        if not was_set:
+            # Cycles' setting of a transparent film holds as long as Lancer's own is not set.
+            owner.property_unset(field.identifier)
         owner.id_data.update_tag()
         if key in acts:
             # A rounded value, such as a focal length set by its angle, does not return to the same bits.

@@ -27,10 +27,11 @@ def empty(width=32, height=32, samples=4, engine="LANCER"):
 
 
 def light_paths_alike(scene):
-    """Set Cycles' light paths like Lancer's, so that no message warns of them."""
+    """Set Cycles' light paths and pixel filter like Lancer's, so that no message warns of them."""
     cycles = scene.cycles
     cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = scene.lancer.max_bounces
     cycles.blur_glossy = cycles.sample_clamp_indirect = 0.0
+    cycles.pixel_filter_type = scene.lancer.pixel_filter
 
 
 def link(name, data, location=(0, 0, 0), rotation=(0, 0, 0)):

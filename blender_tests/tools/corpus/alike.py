@@ -43,8 +43,6 @@ def make_alike(scene, pixels, threads):
         told += _take(scene.cycles, _SIMPLIFIED)
     told += _light_paths(scene)
     told += _filter(scene)
-    for setting in ("film_transparent_glass", "film_transparent_roughness"):
-        setattr(scene.lancer, setting, getattr(scene.cycles, setting))
     scene.lancer.integrator = "PATH"
     scene.lancer.use_animated_seed = False
     return told + _render(scene.render, pixels, threads)

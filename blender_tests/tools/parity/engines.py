@@ -42,10 +42,6 @@ def pass_name(name):
 def unbias(scene, case, samples, seed):
     _set_cycles(scene.cycles, case, samples, seed)
     _set_lancer(scene.lancer, case, samples, seed)
-    for setting in ("film_transparent_glass", "film_transparent_roughness"):
-        # The scene sets Cycles' settings, of which Lancer has its own copies.
-        if hasattr(scene.lancer, setting):
-            setattr(scene.lancer, setting, getattr(scene.cycles, setting))
     scene.render.resolution_x, scene.render.resolution_y = case.size
     scene.render.resolution_percentage = 100
     scene.render.use_compositing = scene.render.use_sequencer = False
