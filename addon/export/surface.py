@@ -108,7 +108,7 @@ class Surface:
         CLOSURES.get(node.type, read_unknown)(self, site, weight)
         return ()
 
-    # ---- what closures add ----
+    # ---- contributions of closures ----
 
     def emit(self, radiance):
         self.emission = self.graph.add(self.emission, radiance)

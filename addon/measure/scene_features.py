@@ -43,7 +43,7 @@ class _Kind:
     pronoun: str = "it"
 
 
-# ---- who uses it ----
+# ---- uses of a feature ----
 
 
 def _named(names):

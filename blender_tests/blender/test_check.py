@@ -176,7 +176,7 @@ def test_lines_say_who_where_and_what_to_do():
     )
     assert lines([finding]) == ["object 'Vase' (mesh 'Vase', material 'Glass') near (1, 2.5, 1e+07): is open; close it"]
     assert by_severity([dataclasses.replace(finding, severity=Severity.HINT), finding])[0] is finding
-    # Of one kind, what there is most of.
+    # Findings of one kind are sorted by weight.
     assert by_severity([finding, dataclasses.replace(finding, weight=0.5)])[0].weight == 0.5
 
 

@@ -1,6 +1,6 @@
-// Open Image Denoise under the names of its version 1, for tests: only those functions that version 1 has, each with its
-// parameters there, done by the library of version 2 that the environment's LANCER_TEST_OIDN names. Blender 3.x brings
-// version 1.
+// Open Image Denoise with the interface of version 1, for tests: only the functions of version 1, with their parameters of
+// version 1, implemented by the library of version 2 that the environment variable LANCER_TEST_OIDN names. Blender 3.x
+// contains version 1.
 
 #include <cstddef>
 #include <cstdlib>
@@ -10,7 +10,7 @@
 namespace {
 
 void *theirs(const char *name) {
-  // Not linked, so that a search for a function in this library does not go on into the other.
+  // Not linked, so that a search for a function in this library does not continue in the other.
   static void *const library = dlopen(std::getenv("LANCER_TEST_OIDN"), RTLD_NOW | RTLD_LOCAL);
   return dlsym(library, name);
 }

@@ -35,7 +35,7 @@ def _blocks(picture):
 
 def compare(name, bounces, samples):
     scene = stage.empty(SIZE, SIZE)
-    # A builder may return a function that replaces, for Cycles, what Cycles contradicts itself about.
+    # A builder may return a function that changes the scene before Cycles renders it, where Cycles is inconsistent.
     before_cycles = globals()["_" + name]()
     if scene.camera is None:
         stage.camera()

@@ -1,4 +1,4 @@
-"""What a case leaves behind, and how a case may end: nothing of either reaches the next case."""
+"""Cases that leave changes behind, or end badly: the next case must not notice."""
 
 import os
 import sys
@@ -15,7 +15,7 @@ def _on_load(*_):
 
 
 def leave():
-    """Changes everything that a case can change."""
+    """Change everything that a case can change."""
     bpy.context.scene.render.resolution_x = 77
     bpy.data.objects.new("Left", None).use_fake_user = True
     bpy.context.preferences.filepaths.use_relative_paths = False
@@ -28,7 +28,7 @@ def leave():
 
 
 def look():
-    """Returns the things that leave() has changed and that are still changed."""
+    """Return the things that leave() has changed and that are still changed."""
     found = {
         "resolution": bpy.context.scene.render.resolution_x == 77,
         "object": "Left" in bpy.data.objects,

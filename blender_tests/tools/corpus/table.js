@@ -1,4 +1,4 @@
-// Sorts the table by the column whose head is clicked; once more turns the order round.
+// Sorts the table by the column whose head is clicked; a second click reverses the order.
 for (const table of document.querySelectorAll("table.sortable")) {
   const heads = [...table.tHead.rows[0].cells];
   heads.forEach((head, column) => {
@@ -9,7 +9,7 @@ for (const table of document.querySelectorAll("table.sortable")) {
       const value = (row) => row.cells[column].dataset.value ?? row.cells[column].textContent;
       const compare = (a, b) => {
         const [x, y] = [value(a), value(b)];
-        // What has no number stands last in either order.
+        // Cells without a number come last in either order.
         if (x === "" || y === "") return (x === "") - (y === "");
         const numbers = Number(x) - Number(y);
         const order = Number.isNaN(numbers) ? x.localeCompare(y) : numbers;
@@ -20,7 +20,7 @@ for (const table of document.querySelectorAll("table.sortable")) {
     };
   });
 }
-// Shows the files of one verdict, or all again.
+// Shows the files of one verdict, or all.
 for (const button of document.querySelectorAll("button[data-verdict]")) {
   button.onclick = () => {
     const wanted = button.dataset.verdict;

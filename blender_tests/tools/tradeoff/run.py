@@ -30,7 +30,7 @@ _CYCLES_SHARE = 2
 _SEEDS, _QUICK_SEEDS = 5, 3
 _MOST, _QUICK_MOST = 1024, 128
 _CLASSIC_MOST = 64
-# Of what takes longer than all else together.
+# Seeds of the longest curves, which take longer than all others together.
 _LONG_SEEDS = 1
 
 

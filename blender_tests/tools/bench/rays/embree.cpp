@@ -1,6 +1,6 @@
 // embree.cpp LIBRARY WORK THREADS PASSES: Embree on a file of rays, one by one and in packets, fast and robust, as JSON.
 //
-// The package that brings the library has no headers: what is used of its interface, version 4, is declared here.
+// The package of the library has no headers: this file declares the part of its interface, version 4, that it uses.
 #include "work.h"
 
 #include <dlfcn.h>
@@ -13,7 +13,7 @@ struct Arguments {
 };
 constexpr uint32_t kCoherent = 1u << 16;
 
-// Rays and hits of a packet of N, each number an array of N. The last number of a hit is there since instances have arrays.
+// Rays and hits of a packet of N, each field an array of N. Hits have their last field since instances have arrays.
 template <int N> struct alignas(N == 1 ? 16 : 4 * N) Rays {
   float ox[N], oy[N], oz[N], tnear[N], dx[N], dy[N], dz[N], time[N], tfar[N];
   uint32_t mask[N], id[N], flags[N];

@@ -1,6 +1,6 @@
-// lancer_rays WORK THREADS PASSES [LEAK_RAYS]: our accelerator on a file of rays, in batches as integrators ask, as JSON.
+// lancer_rays WORK THREADS PASSES [LEAK_RAYS]: our accelerator on a file of rays, in batches like integrators', as JSON.
 //
-// With LEAK_RAYS the mesh is a closed one around the origin, and that many rays from within aim at its vertices and edges.
+// With LEAK_RAYS the mesh must be closed around the origin, and that many rays from inside aim at its vertices and edges.
 #include "work.h"
 
 #include "objects.h"
@@ -69,7 +69,7 @@ double measure(const Scene &scene, const RaySet &set, unsigned threads, int pass
       if (set.any) {
         scene.accelerator->any_hit(batch, std::span(occluded.data() + first, batch.size()));
       } else {
-        // An answer starts out empty, as integrators hand it over.
+        // Hits are empty before the call, as in integrators.
         std::fill(found.begin() + long(first), found.begin() + long(end), Hit{});
         scene.accelerator->closest_hit(batch, std::span(found.data() + first, batch.size()));
       }
@@ -83,7 +83,7 @@ double measure(const Scene &scene, const RaySet &set, unsigned threads, int pass
   return rate;
 }
 
-// How many of the rays from within the mesh meet nothing.
+// Returns the number of rays from inside the mesh that miss it.
 size_t count_leaks(const Scene &scene, const Work &work, unsigned threads, size_t count) {
   std::atomic<size_t> leaks{0};
   timed(threads, count, 1 << 14, [&](size_t first, size_t end) {
@@ -96,7 +96,7 @@ size_t count_leaks(const Scene &scene, const Work &work, unsigned threads, size_
     for (Ray &ray : rays) {
       const size_t triangle = random() % (work.corners.size() / 3);
       const glm::dvec3 a = vertex(work.corners[3 * triangle]), b = vertex(work.corners[3 * triangle + 1]);
-      // Half of them aim at a vertex, half at a point of an edge.
+      // Half of the rays aim at a vertex, half at a point of an edge.
       const double along = random() % 2 ? 0.0 : unit(random);
       const glm::dvec3 target = a + along * (b - a);
       const glm::dvec3 origin = 0.2 * glm::dvec3(unit(random) - 0.5, unit(random) - 0.5, unit(random) - 0.5);

@@ -1,4 +1,4 @@
-// machine: what this processor does at best, as JSON: its clock, the latency of its memories, and how fast it reads them.
+// machine: the limits of this processor, as JSON: its clock, and the latency and bandwidth of its caches and memory.
 #include "work.h"
 
 #include <numeric>
@@ -6,10 +6,10 @@
 
 namespace {
 
-// Passes take about a millisecond, so that some are not disturbed.
+// Passes take about a millisecond, so that some run without interruption.
 constexpr int kPasses = 100;
 
-// Least seconds of some passes: nothing makes a pass faster than it is.
+// Returns the least seconds of several passes: disturbances only make a pass slower.
 template <class Pass> double least(Pass &&pass) {
   double best = 1e30;
   for (int i = 0; i < kPasses; ++i) {
@@ -20,7 +20,7 @@ template <class Pass> double least(Pass &&pass) {
   return best;
 }
 
-// Additions that wait for one another take a cycle each.
+// Dependent additions take one cycle each.
 double clock_rate() {
   constexpr uint64_t count = 2'000'000;
   const double seconds = least([] {
@@ -33,14 +33,14 @@ double clock_rate() {
   return double(count) / seconds;
 }
 
-// Seconds a load from somewhere in so many bytes, where each load tells the place of the next.
+// Returns the seconds per load from random places in this many bytes, where each load gives the address of the next.
 double latency(size_t bytes) {
   constexpr size_t line = 64 / sizeof(uint32_t);
   const size_t lines = bytes / 64;
   std::vector<uint32_t> order(lines), chain(lines * line);
   std::iota(order.begin(), order.end(), 0u);
   std::shuffle(order.begin(), order.end(), std::mt19937(1));
-  // One ring through all lines.
+  // One cycle through all cache lines.
   for (size_t i = 0; i < lines; ++i)
     chain[order[i] * line] = uint32_t(order[(i + 1) % lines] * line);
   constexpr size_t count = 20'000;
@@ -53,7 +53,7 @@ double latency(size_t bytes) {
   return seconds / count;
 }
 
-// Bytes a second that all threads read together, each over and over from its own so many bytes.
+// Returns the bytes per second that all threads read together; each reads its own array of this many bytes repeatedly.
 double bandwidth(size_t bytes, unsigned threads) {
   const size_t words = bytes / sizeof(uint64_t);
   const size_t rounds = std::max<size_t>(1, (size_t(1) << 23) / bytes);
@@ -79,7 +79,7 @@ double bandwidth(size_t bytes, unsigned threads) {
 int main(int count, char **words) {
   const unsigned threads = count > 1 ? unsigned(std::atoi(words[1])) : 1;
   std::printf("{\"clock\": %g", clock_rate());
-  // Well inside the first and second cache, and well beyond the second; a shared third one may be of any size.
+  // Well inside the first and second cache, and well beyond the second; a shared third cache may have any size.
   const std::pair<const char *, size_t> sizes[] = {
       {"l1", size_t(16) << 10}, {"l2", size_t(512) << 10}, {"l3", size_t(12) << 20}, {"memory", size_t(128) << 20}};
   for (const auto &[name, bytes] : sizes)

@@ -1,7 +1,7 @@
-// What both drivers share: the file of triangles and rays, threads that take batches, clocks, and the answer as JSON.
+// Code that both drivers share: the file of triangles and rays, threads that take batches, clocks, and the answer as JSON.
 //
 // File, little-endian: uint32 vertices, triangles, sets; float positions[vertices][3]; uint32 corners[triangles][3];
-// and for each set uint32 count, any (1: is anything in the way, 0: the closest hit), char name[16],
+// and for each set uint32 count, any (1: any hit, 0: the closest hit), char name[16],
 // float origin[3], direction[3], tmax for each ray. Rays start at t = 0.
 #pragma once
 
@@ -68,7 +68,7 @@ inline Work load_work(const char *path) {
 
 inline double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-// Seconds that threads take for items 0 ... count - 1, in batches: what(first, end). All start together.
+// Returns the seconds that threads take for items 0 ... count - 1, in batches: what(first, end). All start together.
 template <class What> double timed(unsigned threads, size_t count, size_t batch, What &&what) {
   std::atomic<size_t> next{0};
   std::atomic<unsigned> ready{0};
@@ -92,7 +92,7 @@ template <class What> double timed(unsigned threads, size_t count, size_t batch,
   return now() - started;
 }
 
-// Rays a second, best of some passes: a disturbed pass says nothing of the kernel.
+// Returns the rays per second of the fastest of several passes: disturbances only make a pass slower.
 template <class Pass> double best_rate(size_t rays, int passes, Pass &&pass) {
   double best = pass();
   for (int i = 1; i < passes; ++i)
