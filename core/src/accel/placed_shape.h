@@ -57,8 +57,8 @@ struct alignas(32) PlacedShape {
 };
 
 // Points are o + tau d; t = t0 + tau * unit is the parameter of the world ray. d is the object-space direction over a power of
-// two, its largest component in [1, 2), so that no scale overflows or underflows. o is the closest approach to the frame's
-// centre, so that coordinates are of the mesh's own size at any distance of the viewer.
+// two, its largest component in [1, 2), so that no scale overflows or underflows. o is the ray's closest approach to the
+// frame's centre. So the coordinates have the magnitude of the mesh's size, however far the viewer is.
 struct ObjectRay {
   double o[3];
   double q[3]; // o relative to the frame's centre
@@ -66,7 +66,7 @@ struct ObjectRay {
   double t0;
   double unit, inverse_unit; // powers of two
 };
-// ObjectRay as vectors: of one ray, or of as many as D has lanes.
+// ObjectRay as vectors: one ray for each lane of D.
 template <class V, class D> struct EnteredRay {
   V o, q, d;
   D t0, unit, inverse_unit;

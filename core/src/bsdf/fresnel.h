@@ -56,7 +56,7 @@ template <class F> LANCER_LANE F fresnel_conductor(F cos_i, F n, F k) {
   return 0.5f * (rs + rp);
 }
 
-// Returns the refracted direction for wo with wo.z > 0; cos_t from fresnel(wo.z, eta). It is on the other side, z < 0.
+// Returns the refracted direction for wo with wo.z > 0; cos_t from fresnel(wo.z, eta). The refracted direction has z < 0.
 template <class F> LANCER_LANE Vec3<F> refract_local(const Vec3<F> &wo, F eta, F cos_t) {
   return normalize(Vec3<F>(-wo.x / eta, -wo.y / eta, -cos_t));
 }

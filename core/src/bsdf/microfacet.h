@@ -11,8 +11,8 @@
 
 namespace lancer {
 
-// Below this product of both roughnesses Cycles treats a lobe as a mirror; our limit is slightly higher, where float half
-// vectors no longer distinguish directions (alpha 2e-5).
+// A lobe whose product of both roughnesses is below this limit is treated as a mirror. Cycles' limit is slightly lower; below
+// alpha = 2e-5, float half vectors cannot distinguish the directions of a lobe.
 inline constexpr float kMirrorAlpha2 = 4e-10f;
 inline constexpr float kMirrorAlpha2Blender3 = 1e-7f;
 

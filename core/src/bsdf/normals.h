@@ -24,8 +24,9 @@ template <class F> LANCER_LANE Vec3<F> normal_or_shading(const Bsdf<F> &bsdf, co
 }
 
 // reflecting_normal() returns a unit normal for reflecting lobes: n (0 = the shading normal) if the mirror direction of wo is
-// above the surface, else n tilted towards ng as little as necessary. n is unchanged without bump correction.
-// least_rise() is the least cosine to ng of the mirror direction, nearly that of wo at grazing angles.
+// above the surface. Otherwise it tilts n towards ng as little as necessary. Without bump correction, n is unchanged.
+// least_rise() returns the least accepted cosine between the mirror direction and ng, which is nearly that of wo at grazing
+// angles.
 template <class V> LANCER_LANE NumberOf<V> least_rise(const V &wo, const V &ng) {
   using F = NumberOf<V>;
   return min(0.9f * dot(wo, ng), F(0.01f));
@@ -44,7 +45,7 @@ template <class F> LANCER_LANE Vec3<F> reflecting_normal(const Bsdf<F> &bsdf, co
     return normal;
   const F cos_o = dot(bsdf.wo, bsdf.ng), least = least_rise(bsdf.wo, bsdf.ng);
   // In the plane of both normals wo is (x, z). The normal at angle t from ng mirrors its z to x sin(2t) + z cos(2t), which must
-  // equal `least`: of the two solutions, use the one on the side of the given normal.
+  // equal `least`: there are two solutions; use that on the side of the given normal.
   const V side = unit_or(normal - dot(normal, bsdf.ng) * bsdf.ng, normal);
   const F x = dot(bsdf.wo, side), z = cos_o;
   const F length2 = x * x + z * z;

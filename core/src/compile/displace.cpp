@@ -163,7 +163,7 @@ private:
   uint32_t number_, given_mesh_;
   const Instance &instance_;
   Mesh &mesh_;
-  std::vector<bool> renews_; // per triangle: its material displaces, and its normals are computed anew
+  std::vector<bool> renews_; // per triangle: its material displaces, and its normals are recomputed
   bool keeps_ = false;       // some displaced triangle keeps its normals
   std::vector<Place> places_;
 };

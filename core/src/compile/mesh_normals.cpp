@@ -95,7 +95,7 @@ std::vector<glm::vec3> vertex_normals(const Mesh &mesh) {
   std::vector<glm::vec3> normals = mesh.normals;
   if (std::find(normals.begin(), normals.end(), none) == normals.end())
     return normals;
-  // A normal of 0 stands for the geometric one.
+  // Replace a normal of 0 by the geometric normal.
   const std::vector<glm::vec3> geometric = normals_by_angle(mesh);
   for (size_t i = 0; i < normals.size(); ++i)
     if (normals[i] == none)

@@ -23,11 +23,11 @@ std::vector<glm::vec3> vertex_normals(const Mesh &mesh);
 // Recomputes those of the mesh's own normals that belong to the given triangles. triangles: one bit per triangle.
 void renew_normals(Mesh &mesh, const std::vector<bool> &triangles);
 
-// The places at which flat shading evaluates the one colour of a polygon.
+// The places at which flat shading evaluates the colour of a polygon.
 
 // Returns the centres by polygon number. The normal is the sum of the triangles' area vectors (Newell's). The centre is the
-// mean of the polygon's vertices; for a warped polygon, the place straight above or below the mean along the normal; for a
-// concave polygon that does not contain the mean, the nearest place.
+// mean of the polygon's vertices, projected onto a warped polygon along the normal. If a concave polygon does not contain the
+// mean, the centre is the nearest place of the polygon.
 std::vector<PolygonCenter> polygon_centers(const Mesh &mesh);
 
 // Returns the hit at the centre of the polygon of the given hit; t stays. A triangle without a polygon is its own polygon.

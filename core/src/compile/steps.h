@@ -20,7 +20,7 @@ MaterialDemand demand_of(const Material &material);
 // Reports the lobes and frames that exceed the capacity of a BSDF.
 void report_limits(const std::string &object, const Material &material, Messages &messages);
 
-// Moves the vertices of every mesh whose materials displace, and computes its normals anew. A mesh whose instances have
+// Moves the vertices of every mesh whose materials displace, and recomputes the mesh's normals. A mesh whose instances have
 // different displacing materials is copied for each list of them.
 void displace(Description &description, const BuildContext &context);
 

@@ -200,7 +200,7 @@ DescribedLight describe_triangle(const glm::dvec3 (&corners)[3], double energy, 
   LightBounds bounds;
   for (const glm::dvec3 &corner : corners)
     bounds.grow(corner);
-  // Both sides emit: as in Cycles, an arbitrary direction in the plane with theta_o = pi / 2 stands for both.
+  // Both sides emit. As in Cycles, a cone with theta_o = pi / 2 around an arbitrary direction in the plane represents both.
   const glm::dvec3 side = corners[0] - corners[1];
   bounds.cone = {glm::length(side) > 0.0 ? glm::normalize(side) : glm::dvec3(0.0, 0.0, 1.0), 0.5 * kPi, 0.5 * kPi};
   bounds.energy = energy;

@@ -45,7 +45,7 @@ public:
   // choose() in two steps, because kernels do the first step: choose in the binary tree, then use the rest of u to choose
   // within the light that the first step returned.
   const BinaryLightTree &binary_tree() const { return binary_tree_; }
-  // In the binary tree, the number size() stands for all lights of wide_tree().
+  // In the binary tree, the light number size() represents all lights of wide_tree().
   const LightTree &wide_tree() const { return wide_tree_; }
   Choice choose_within(const Geometry &geometry, const LightQuery &query, LightChoice light) const;
   // Whether the first step has already chosen a single light.

@@ -65,7 +65,7 @@ public:
 
   // u in [0, 1): one random number serves all levels of the tree.
   LightChoice choose(const LightQuery &query, double u) const;
-  // Choices for several points at once.
+  // The walks that choose lights for several points together.
   static LightWalk walk(const LightQuery &query, double u);
   void choose(std::span<LightWalk> walks) const { kernel_->choose(tree(), walks.data(), uint32_t(walks.size())); }
   // Returns the probability with which choose() returns a light.

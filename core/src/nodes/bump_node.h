@@ -59,8 +59,8 @@ template <class F> void move(const Plane<F> &plane, const Vector3<DoubleOf<F>> &
   site.p += offset;
   if (!any(site.on_mesh))
     return;
-  // Attributes of a mesh move the other way on backfaces, as in Cycles, which flips the derivatives of the parametrisation
-  // together with the normal.
+  // On backfaces, attributes of a mesh move in the opposite direction, because Cycles flips the derivatives of the
+  // parametrisation together with the normal.
   D weights[2];
   plane.step(select(site.backfacing, -offset, offset), weights);
   for (int k = 0; k < 2; ++k)

@@ -78,7 +78,7 @@ template <class F> Vector3<F> box_shares(const Vector3<F> &n, const F &blend) {
   using V3 = Vector3<F>;
   const F zero(0.0f), one(1.0f), half(0.5f), two(2.0f), limit = half * (one + blend);
   V3 shares = (F(two - limit) * n + V3(limit - one)) / F(two * limit - one);
-  // Omit side `out` if the other two are far larger: i gets its share, j the rest.
+  // Omit side `out` if the other two are far larger: side i then has the returned share, and side j the rest.
   const auto edge = [&](const F &out, const F &i, const F &j, F &of_i) {
     of_i = clamp01(F((i / (i + j) - half * (one - blend)) / blend));
     return out < (one - limit) * (i + j);

@@ -75,15 +75,15 @@ PictureError picture_error(const LuminanceMap &map, const RelativeVariance &rela
 
 // Returns the standard error of each pixel's mean luminance: [height][width]; infinity where a pixel has no samples.
 //
-// Two halves say little about one pixel, so their variance is averaged over the smallest square window in which enough pixels
-// carry it: where light is rare and most pixels have none of it, the window grows until it holds pixels that have some. Over
-// pixels of all kinds, 95 % of the true values then lie within 1.96 standard errors (Rousselle, Manzi, Zwicker, "Robust
+// Two halves estimate the variance of one pixel poorly, so the variance is averaged over a square window: the smallest in which
+// enough pixels have variance. Where light is rare and most pixels have none, the window grows until it contains lit pixels.
+// Over pixels of all kinds, 95 % of the true values then lie within 1.96 standard errors (Rousselle, Manzi, Zwicker, "Robust
 // Denoising using Feature and Color Information", 2013, average variances in the same way).
 //
 // The edge of a clean surface has noise that the pixels beside the edge lack. So edges share variances with edges alone, and
-// other pixels with other pixels. A pixel between a darker and a brighter neighbour is an edge where the largest variance of a
-// mixture of these two (Bhatia, Davis, "A better bound on the variance", 2000) exceeds all the noise around it; edges share
-// with edges of about the same mixture variance.
+// other pixels with other pixels. A pixel between a darker and a brighter neighbour is an edge if the largest variance of a
+// mixture of these two (Bhatia, Davis, "A better bound on the variance", 2000) exceeds all the noise around the pixel. Edges
+// share only with edges of about the same mixture variance.
 std::vector<float> error_bars(const LuminanceMap &map);
 
 // The choice of the tiles to sample next: the tiles whose further samples lower the error of the picture most.
@@ -94,9 +94,9 @@ std::vector<float> error_bars(const LuminanceMap &map);
 // The other half decides whether a half is refined. If a half's own samples decided, samples that happen to be dark would be
 // kept and samples that happen to be bright would be diluted, so the picture would be too dark (Kirk, Arvo, "Unbiased sampling
 // techniques for image synthesis", 1991). Some of this bias remains where light comes in rare flashes. First, the other half
-// shares variances with its neighbours, some of which are pixels of this half. Second, rounds go on until the estimated error
-// of the whole picture is small, which dilutes the flashes that have been hit. Sharing within the other half alone would take
-// up to ten times the samples after one flash in this half. Blocks of 16 x 16 were measured too dark by up to 2.6 % of the
+// shares variances with its neighbours, some of which are pixels of this half. Second, refinement continues until the estimated
+// error of the whole picture is small, which dilutes the flashes that have been hit. Sharing within the other half alone would
+// take up to ten times the samples after one flash in this half. Blocks of 16 x 16 were measured too dark by up to 2.6 % of the
 // target.
 //   target: of the error of the picture; most: samples that no pixel may exceed.
 struct Refinement {

@@ -9,7 +9,7 @@
 
 namespace lancer {
 
-// Renders some pixels of the whole image with different splits and chooses the one with the least variance times cost. The
+// Renders some pixels of the whole image with different splits and chooses the splits of the least variance times cost. The
 // pilot's samples are discarded: a picture that keeps samples on which a decision was based would be biased. Variance is
 // estimated from halves, like the error of a picture; cost is counted in rays and vertices. So the result depends neither on
 // threads, nor on clocks, nor on the seed or the rendered region.
@@ -18,8 +18,8 @@ public:
   // Below this number of planned samples, the pilot costs more time than it saves.
   static constexpr uint32_t kLeastPlanned = 16;
 
-  // All references must outlive the pilot. background: pixels that need not be traced; it changes nothing but the time.
-  // threads: the number of threads that will call work().
+  // All references must outlive the pilot. background: pixels that need not be traced; it changes only the time. threads: the
+  // number of threads that will call work().
   Pilot(const Scene &scene, const Camera &camera, const Background &background, const IntegratorSettings &settings,
         uint32_t threads);
 

@@ -128,7 +128,7 @@ void Session::start() {
   started_ = true;
   active_ = pool_.size();
   start_ = std::chrono::steady_clock::now();
-  // If the last range ended before the first sample, the background and the splits are found anew.
+  // If the last range ended before the first sample, the background and the splits have to be found again.
   pilot_.reset();
   background_found_.reset();
   if (film_.sample_range().second == 0) {

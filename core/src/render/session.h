@@ -69,7 +69,7 @@ public:
   enum class State { Done, Running, Cancelled };
   State wait(uint32_t milliseconds, Progress &progress);
   void cancel() { cancel_ = true; }
-  // Ends the range like cancel(), but each pixel keeps only a power of two of samples, and the session can go on.
+  // Ends the range like cancel(), but each pixel keeps only a power of two of samples, and the session can continue.
   void stop() {
     stop_ = true;
     cancel_ = true;

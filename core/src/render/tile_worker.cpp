@@ -10,7 +10,7 @@ constexpr uint32_t kBatch = 1024;
 // uncovered pixels, fill at most this many batches.
 constexpr uint32_t kMostBatches = 2;
 
-// Returns a sample with nothing but the hit of the camera ray.
+// Returns a sample that contains only the hit of the camera ray.
 SampleResult place_of(const SampleResult &result) {
   SampleResult place(true);
   place.depth = result.depth;

@@ -160,7 +160,7 @@ double far_out(double x) {
   if (x > 28.0)
     return 0.0;
   const double t = (x - 4.0) / (x + 4.0);
-  // Evaluate four terms at a time: in Horner's scheme each would wait for the one before.
+  // Evaluate four terms at a time: in Horner's scheme, each term would wait for the term before.
   const double t2 = t * t, t4 = t2 * t2, t8 = t4 * t4;
   const auto four = [&](const double *c) { return (c[0] + t * c[1]) + t2 * (c[2] + t * c[3]); };
   const double p = (four(kScaled) + t4 * four(kScaled + 4)) +

@@ -43,8 +43,9 @@ template <class U> LANCER_LANE constexpr U reverse_bits(U x) {
 
 using NibbleTable = std::array<std::array<std::array<uint32_t, 16>, 8>, kJointDimensions>;
 
-// For each dimension and each group of four index bits, the sum of the generator matrix's columns, digits reversed. 8 KB fit in
-// the first-level cache, where a table over whole bytes (64 KB) would not; an index below 4096 takes three lookups.
+// For each dimension and each group of four index bits, the sum of the generator matrix's columns, with reversed digits. The
+// table of 8 KB fits in the first-level cache; a table over whole bytes (64 KB) would not. An index below 4096 takes three
+// lookups.
 extern const NibbleTable kNibbles;
 
 // Returns a point's coordinate in a joint dimension; bit 0 is the first digit after the binary point.

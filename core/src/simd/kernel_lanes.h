@@ -1,4 +1,4 @@
-// The lanes of a kernel: as many as a register of floats has in the instruction set of this unit.
+// The lanes of a kernel: the number of floats in a register of this unit's instruction set.
 #pragma once
 
 #include "simd/memory.h"

@@ -65,7 +65,7 @@ void PlaneRule::find_light_planes() {
       const Hit hit{0.0, 0.0f, 0.0f, i, primitive};
       if (!flagged(hit) || !emits(hit))
         continue;
-      // Test each triangle by itself: its plane is less precise outside it.
+      // Test each triangle separately: outside a triangle, its plane is less precise.
       shines_anywhere = !mesh || light_planes.size() == kLightPlanes;
       if (shines_anywhere)
         return;

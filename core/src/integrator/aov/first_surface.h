@@ -27,8 +27,8 @@ void record_seen(const Scene &scene, const Camera &camera, const IntegratorSetti
 // Returns the share of mist in front of a point: 0 near, 1 far.
 float mist_at(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const Surface &surface);
 
-// Albedo, normal and depth for denoisers: those of the first surface that is not mostly a mirror, with the throughput of the
-// surfaces before it; or, as in Blender 5.2, those of all surfaces, weighted by their matt share.
+// Albedo, normal and depth for denoisers. They are those of the first surface that is not mostly a mirror, with the throughput
+// of the surfaces before it. By the rule of Blender 5.2, they are those of all surfaces, weighted by their matt share.
 
 // The state of a camera path's guides after the mirrors so far.
 struct DenoisingGuides {

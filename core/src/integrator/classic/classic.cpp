@@ -22,7 +22,7 @@ glm::vec3 ambient_light(const Scene &scene, const Camera &camera) {
   const Environment &environment = scene.lights.environment();
   if (!environment.varies())
     return environment.constant();
-  // Take the mean of the six axis directions: ambient light is a rough model anyway.
+  // Take the mean of the six axis directions, which is precise enough for the rough model of ambient light.
   std::vector<glm::vec4> values(scene.world.program.nodes.size());
   glm::vec3 sum(0.0f);
   for (int axis = 0; axis < 3; ++axis) {

@@ -54,8 +54,8 @@ void PathIntegrator::split() {
 }
 
 // Draws the requested random numbers, bits of u, in all lanes. In a lane that splits, light or path n of count takes the
-// numbers of sample count s + n, where s is the number of its own sample. All of them together are then distributed as evenly
-// as count times as many samples. A path keeps its new sample number until its end.
+// numbers of the sample count * s + n, where s is the number of the lane's sample. Together, the branches are then distributed
+// as evenly as the samples of an unsplit sequence. A path keeps its new sample number until its end.
 void PathIntegrator::draw_numbers(uint32_t wanted, uint32_t count, uint32_t number) {
   const uint32_t joint = std::min(8u, kJointDimensions - std::min(block_.dimension, kJointDimensions));
   uint32_t last = 0, points[8] = {};
@@ -119,7 +119,7 @@ void PathIntegrator::cut_holes() {
   }
 }
 
-// Samples a light in every lane whose path goes on; several lights in lanes that split.
+// Samples a light in every lane whose path continues, or several lights in a lane that splits.
 void PathIntegrator::ask_lights() {
   uint32_t asking = 0;
   for (uint32_t lane = 0; lane < surfaces_.count(); ++lane)

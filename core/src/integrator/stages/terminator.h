@@ -17,7 +17,7 @@ template <class F> LANCER_LANE F terminator_amount(F limit, const Vec3<F> &n, co
 }
 
 // Returns the offset of the start of a ray towards the unit direction wi, in the normalised world; n: the shading normal, ng:
-// the geometric one, both on the viewer's side. 0 where the mesh is not smooth or wi is far enough from grazing.
+// the geometric one, both on the viewer's side. The offset is 0 if the mesh is not smooth or if wi is far from grazing.
 glm::dvec3 terminator_offset(const Geometry &geometry, const Surface &surface, const glm::vec3 &n, const glm::vec3 &ng,
                              const glm::vec3 &wi);
 

@@ -10,7 +10,7 @@ namespace lancer {
 
 namespace {
 
-// Smaller images stay in the caches anyway.
+// Smaller images stay in the caches without a prefetch.
 constexpr size_t kLarge = size_t(4) << 20;
 
 } // namespace

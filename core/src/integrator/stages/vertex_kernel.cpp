@@ -184,8 +184,8 @@ LANCER_LANE void light_of(VertexBlock &block, int first, const Bsdf<F> &bsdf, D 
     value.part[component] = select(has_bit(block.light_hidden + first, kinds[component]), Vec3<F>(zero), value.part[component]);
   const V3 f = value.f();
   // BSDF samples find the same light, unless it is a single direction. The weights count one sample of each technique even
-  // where samples split: with interpolated normals, the two techniques do not see the same light, so the weights change the
-  // picture, and Cycles counts one of each.
+  // where samples split, as in Cycles. The count matters: with interpolated normals, the two techniques do not find the same
+  // light, so that the weights change the picture.
   const F weight = select(has_bit(block.light_delta + first, 1u), F(1.0f), mis_weight(pdf, widen(value.pdf) * scatters));
   // f over a density is of the order of 1, however narrow the lobe and however bright the light.
   const V3 contribution = load3(block.beta, first) * (f * narrow(widen(weight) / (pdf * load(block.lights + first)))) *
