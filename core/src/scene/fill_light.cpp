@@ -38,7 +38,7 @@ public:
     if (!(radius > 0.0) || !(disk_radiance(emission, radius) > kBrightestDisk))
       return value;
     messages_.add(object_,
-                  std::string(what) + " " + to_text(value) + " was replaced by 0: so small a lamp would be too bright");
+                  std::string(what) + " " + to_text(value) + " was replaced by 0: a lamp this small would be too bright");
     return 0.0f;
   }
 
