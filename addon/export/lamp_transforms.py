@@ -18,7 +18,7 @@ def axes_of(kind, matrix):
     if kind == LightKind.AREA and not lengths[2] > 0.0:
         normal = np.cross(result[:, 0], result[:, 1])
         result[:, 2] = normal / np.linalg.norm(normal)
-    if kind == LightKind.SPOT and bpy.app.version < (4, 0) and is_sheared(matrix):
+    if kind == LightKind.SPOT and bpy.app.version < (4, 0) and (is_sheared(matrix) or not lengths.all()):
         z = result[:, 2]
         x = np.cross(np.eye(3)[np.abs(z).argmin()], z)
         result[:, 0] = x / np.linalg.norm(x)

@@ -341,6 +341,8 @@ def test_export_under_transforms(which, tmp_path):
         # The sides (1, 0) and (0.75, 1) span the area 1; Blender's numbers are of single precision.
         if name == "AREA sheared":
             assert np.allclose(matrix, [[1, 0.6, 0.2**0.5], [0, 0.8, 0], [0, 0, 0.8**0.5]])
+        if name in ("SPOT flat x", "SPOT flat y", "AREA flat z", "SPOT sheared") and not new:
+            assert np.allclose(np.transpose(matrix) @ matrix, np.eye(3), atol=1e-6), name
         if name not in dark:
             assert np.isclose(share, 1.0, rtol=1e-6), (name, share)
 

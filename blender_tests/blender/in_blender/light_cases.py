@@ -2,7 +2,7 @@
 
 import bpy
 import stage
-from mathutils import Matrix
+from mathutils import Euler, Matrix
 
 from addon.export.lights import export_light
 from addon.messages.messages import Messages
@@ -67,7 +67,8 @@ def export():
 def transforms():
     """{kind and transform: [matrix or None, share of the plain lamp's emission, messages]}."""
     stage.empty()
-    flat = {f"flat {axis}": Matrix.Diagonal([float(i != k) for k in range(3)] + [1.0]) for i, axis in enumerate("xyz")}
+    turn = Euler((0.3, 0.4, 0.5)).to_matrix().to_4x4()
+    flat = {f"flat {axis}": turn @ Matrix.Diagonal([float(i != k) for k in range(3)] + [1.0]) for i, axis in enumerate("xyz")}
     sheared = Matrix.Identity(4)
     sheared[0][1], sheared[0][2] = 0.75, 0.5
     depsgraph = bpy.context.evaluated_depsgraph_get()
