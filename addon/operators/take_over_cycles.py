@@ -1,9 +1,9 @@
-"""Take Over Cycles' Settings: gives a scene's own settings the values that its Cycles settings stand for.
+"""Take Over Cycles' Settings: gives Lancer's settings of a scene the values of its Cycles settings.
 
     from addon.operators.take_over_cycles import take_over
     take_over(scene)
 
-Cycles' own settings stay as they are. What Lancer reads of them by itself needs no copy.
+Cycles' settings stay as they are. Those that the export follows by itself need no copy.
 """
 
 import bpy
@@ -22,9 +22,9 @@ _OFF = "the Cycles add-on is off, there are no settings to take over"
 
 
 def differing(scene):
-    """{name of a setting of scene.lancer: the value that Cycles' settings stand for}, where the setting has another value.
+    """Return {name of a setting of scene.lancer: value of Cycles' counterpart} of all settings that differ from it.
 
-    Empty where Cycles, an add-on, is off.
+    Empty while Cycles, an add-on, is disabled.
     """
     cycles = getattr(scene, "cycles", None)
     if cycles is None:
@@ -34,7 +34,7 @@ def differing(scene):
 
 
 def take_over(scene):
-    """Sets all that differs, and returns it as differing() does. Raises LancerError where the Cycles add-on is off."""
+    """Set all that differs, and return it as differing() does. Raises LancerError while the Cycles add-on is disabled."""
     if not hasattr(scene, "cycles"):
         raise LancerError(f"scene '{scene.name}': {_OFF}")
     changes = differing(scene)
@@ -85,7 +85,7 @@ def _field(scene, name):
 
 
 def _within_limits(field, value):
-    """The limits of the two add-ons differ."""
+    """Return the value clamped to a property's limits, which differ between the two add-ons."""
     return min(max(value, field.hard_min), field.hard_max) if field.type in ("INT", "FLOAT") else value
 
 
@@ -94,7 +94,7 @@ def _differs(now, value):
 
 
 def titles(scene, changes):
-    """Names of settings, as panels show them."""
+    """Return the names of settings as panels show them."""
     return [_field(scene, name).name for name in changes]
 
 

@@ -47,7 +47,7 @@ class LANCER_RENDER_PT_sampling(LancerRenderPanel, bpy.types.Panel):
 
 
 def _draw_take_over(column, context):
-    """A button that makes Lancer's settings those of Cycles, as long as any differs."""
+    """Draw the button that copies Cycles' settings and the names of those that it changes, while any differs."""
     changes = take_over_cycles.differing(context.scene)
     if changes:
         column.operator(take_over_cycles.LANCER_OT_take_over_cycles.bl_idname, icon="IMPORT")

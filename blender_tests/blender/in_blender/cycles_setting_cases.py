@@ -141,7 +141,7 @@ def _offered(scene):
 
 
 def _take_over():
-    """What the operator sets, what undo brings back, and what the panel offers before and after."""
+    """The settings before and after the operator, and the panel's offer before and after."""
     from addon.operators import take_over_cycles
 
     scene = stage.empty()
