@@ -69,23 +69,24 @@ def _told():
     # Textures are limited otherwise in a view.
     view = export_scene(depsgraph)[0].camera
 
-    def lines(name):
-        in_view = name in ("texture_limit", "texture_resolution")
+    def lines(in_view):
         return set(export_scene(bpy.context.evaluated_depsgraph_get(), ExportOptions(view=view if in_view else None))[1])
 
-    added = {}
+    added, plain = {}, {in_view: lines(in_view) for in_view in (False, True)}
     for kind, listed in PROPERTIES.items():
         owner = owners.get(kind)
         for name, entry in listed.items():
             if entry.fate != Fate.TOLD or bpy.app.version >= entry.before or name not in owner.bl_rna.properties:
                 continue
+            in_view, value = name in ("texture_limit", "texture_resolution"), getattr(owner, name)
             beside = _BESIDE.get((kind, name))
             if beside:
+                # By itself it adds no line.
                 setattr(owners[beside[0]], beside[1], True)
-            before, value = lines(name), getattr(owner, name)
+                assert lines(in_view) == plain[in_view]
             setattr(owner, name, _other(owner, name))
             owner.id_data.update_tag()
-            added[f"{kind}.{name}"] = sorted(lines(name) - before)
+            added[f"{kind}.{name}"] = sorted(lines(in_view) - plain[in_view])
             setattr(owner, name, value)
             if beside:
                 setattr(owners[beside[0]], beside[1], False)
