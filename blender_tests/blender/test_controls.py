@@ -47,6 +47,7 @@ OF_OTHERS = {
     "texture_limit": "told as not supported, in views",
     "texture_resolution": "told as not supported, in views",
     "use_adaptive_subdivision": "told as not supported, with a modifier",
+    "use_light_tree": "acts on flattened area lamps alone",
     "use_custom_distance": "told as not supported before 4.2",
     "use_shadow": "acts before 4.2 where the Cycles add-on is off",
     "use_shadows": "of a sky that varies, told as not supported; of EEVEE",
