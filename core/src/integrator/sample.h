@@ -126,13 +126,8 @@ struct Energy {
       return 0.0;
     return found < before ? found * found / (before - found) : std::numeric_limits<double>::infinity();
   }
-<<<<<<< HEAD
   // Ignores values that are not finite, because the film drops their sample.
-  void clip(double light) { clipped += std::isfinite(light) ? light : 0.0; }
-=======
-  // Ignores values that are not finite: their sample is dropped.
   void clip(double light) { clipped += std::isfinite(light) ? std::abs(light) : 0.0; }
->>>>>>> 89a6ee1 (Shear, flatten and negate lamps as their transform and power say)
   Energy &operator+=(const Energy &other) {
     clipped += other.clipped;
     last += other.last;

@@ -10,14 +10,9 @@ namespace lancer {
 
 namespace {
 
-<<<<<<< HEAD
 // Bound of luminances, in units of the picture's mean. No positive luminance comes near this bound; negative colours, which the
 // mean ignores, may exceed it. With this bound, sums of squares over a neighbourhood, divided by a hundredth squared, fit into
 // floats.
-=======
-// In units of the mean, which no pixel exceeds by more than the number of pixels. Sums of squares over a neighbourhood, divided
-// by a hundredth squared, still fit into floats.
->>>>>>> 89a6ee1 (Shear, flatten and negate lamps as their transform and power say)
 constexpr double kMost = 1e15;
 
 } // namespace
