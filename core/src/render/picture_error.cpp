@@ -10,9 +10,8 @@ namespace lancer {
 
 namespace {
 
-// Bound of luminances, in units of the picture's mean. No positive luminance comes near this bound; negative colours, which the
-// mean ignores, may exceed it. With this bound, sums of squares over a neighbourhood, divided by a hundredth squared, fit into
-// floats.
+// Bound of luminances, in units of the mean absolute luminance. No pixel exceeds that mean by more than the number of pixels.
+// With this bound, sums of squares over a neighbourhood, divided by a hundredth squared, fit into floats.
 constexpr double kMost = 1e15;
 
 } // namespace
