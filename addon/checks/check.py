@@ -19,10 +19,9 @@ from .subject import Subject
 def check_snapshot(snapshot, thorough=True, poll=None):
     """Return a list of Finding, the most severe first.
 
-    thorough: check everything. Else, as F12 does by itself, check only what is quick compared with a render, and return only
-    those hints by which the picture differs from Cycles'. poll(share) is called between steps with the share done, or None; an
-    exception from it ends the check.
-    """
+    thorough: run all checks in full. Otherwise run only the quick checks of a render, and return a hint only if it means a
+    difference from Cycles. poll(share) is called between steps with the share done, or None; an exception from it ends the
+    check."""
     # The core leaves out geometry that is not finite, with a message; here NaN compares as false.
     with np.errstate(all="ignore"):
         found = _all_findings(Subject(snapshot, thorough, poll))

@@ -107,7 +107,7 @@ def _sizes(subject):
 
 
 def _check_places(subject):
-    """Yield a finding of objects, exact shapes too, that are hardly larger than the steps of their position."""
+    """Yield a finding of objects and exact shapes that are not much larger than the steps of their position."""
     table = subject.instances
     if len(table) == 0:
         return

@@ -8,7 +8,7 @@ from ..bindings.shading import NodeRef
 from .arithmetic import mix
 
 _STEPS = 256
-# Number of values: as many as steps before 4.0; since then one more, so that the last value is at the end of the last step.
+# Number of values: before 4.0, the number of steps; since then one more, so that the last value is at the end of the last step.
 _VALUES = _STEPS + int(bpy.app.version >= (4, 0))
 _EXTRAPOLATES, _STEPPED = 1, 2
 _OF_NUMBER = 1

@@ -3,7 +3,7 @@
 from ..bindings.enums import NodeKind, VectorOperation
 from ..bindings.nodes import evaluate
 
-# Kinds that depend on nothing but their inputs: with constant inputs their result is constant.
+# Kinds whose result depends on the inputs alone and is constant if the inputs are constant.
 FOLDED = {
     NodeKind.ALPHA, NodeKind.CLAMP, NodeKind.COLOR_MODEL, NodeKind.COMBINE, NodeKind.GAMMA, NodeKind.GREY, NodeKind.INVERT,
     NodeKind.MAPPING, NodeKind.MATH, NodeKind.MIX, NodeKind.SEPARATE, NodeKind.VECTOR_MATH,

@@ -168,7 +168,7 @@ def _read(image, source, tell, space, tile=0, path=""):
     """
     is_stored = bool(path)
     if min(source.size) < 1 or source.channels < 1:
-        # Blender knows the type only after it has read the file, and gives scripts no pixels of the layers.
+        # Blender sets the type only after it has read the file, and scripts cannot read the pixels of the layers.
         if source.type == "MULTILAYER":
             text = "is a multilayer EXR, save its layer as a plain EXR or PNG; mid-grey is used"
             tell(f"image '{image.name}' {text}", "feature:multilayer EXR", severity=Severity.WRONG)

@@ -1,4 +1,4 @@
-"""Messages about things that a render leaves out or replaces, each reported once with a count."""
+"""Messages about parts of a scene that a render leaves out or replaces; each is reported once, with a count."""
 
 import math
 from typing import NamedTuple

@@ -12,7 +12,7 @@ from .sentences import sentence
 
 _MEASURE = "lancer.measure_quality"
 
-# A note for artists who are used to Cycles.
+# A note for users of Cycles.
 _REPLACED = (
     "These settings replace Cycles' bounces and clamping. Filter Glossy and limits for single kinds of bounces are not "
     "supported. Messages report differences by these settings."
