@@ -43,6 +43,10 @@ def tangents_name(uv_map):
     return _TANGENT + attribute_name(uv_map)
 
 
+def has_tangents(mesh):
+    return any(attribute.name.startswith(_TANGENT) for attribute in mesh.attributes)
+
+
 def named_attributes(wanted):
     """Return the names in Blender of the wanted attributes of a mesh, without those that Lancer computes."""
     own = (_TANGENT, POLYGONS, RENDER_COLOR)

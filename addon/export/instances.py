@@ -72,6 +72,8 @@ class Instances:
         self._narrowed = {}
         self._checked_hair = set()
         self._names = []  # of rows that share a look and a name
+        self._geometries = {}
+        self.geometries = []  # of the same rows: equal numbers for what Cycles has one geometry for
         self._looks = array("I")
         self._row_of = array("I")  # of entries that show a mesh
         self._entries = array("I")
@@ -177,6 +179,10 @@ class Instances:
             return -1
         self._looks.append(look)
         self._names.append(name)
+        # To Cycles an object that has materials of its own shares its mesh with its instances alone.
+        is_own = any(slot.link == "OBJECT" for slot in owner.material_slots)
+        key = data_key, original_key if is_own else None
+        self.geometries.append(self._geometries.setdefault(key, len(self._geometries)))
         return len(self._names) - 1
 
     def _add_other(self, thing, entry):

@@ -8,6 +8,7 @@ from ..bindings.snapshot import SceneSnapshot
 from ..messages.messages import Messages
 from .camera import export_camera
 from .checks import check_passes, check_scene, check_view_layer
+from .even_normals import with_even_normals
 from .images import Images
 from .instances import Instances
 from .materials import Materials
@@ -66,9 +67,13 @@ def export_scene(depsgraph, options=None, poll=None):
         exported = export_world(sky, images, depsgraph, messages)
     else:
         exported = parts.shader(sky, messages, lambda told, pictures: export_world(sky, pictures, depsgraph, told))
+    table, meshes = instances.to_table(obey), instances.meshes
+    # Cycles' views keep meshes where they are; only final renders move them.
+    if parts is None:
+        meshes, table = with_even_normals(meshes, table, instances.geometries, materials.list)
     snapshot = SceneSnapshot(
-        meshes=tuple(instances.meshes),
-        instances=instances.to_table(obey),
+        meshes=tuple(meshes),
+        instances=table,
         materials=tuple(materials.list),
         lights=tuple(instances.lights),
         images=tuple(images.list),
