@@ -68,7 +68,7 @@ def export_settings(depsgraph, passes, world, messages):
 def _world_settings(world, messages):
     """Return the settings of the mist and ambient occlusion passes; without a world, Cycles' defaults."""
     if world is None:
-        return {"mist_start": 0.0, "mist_depth": 100.0, "mist_falloff": 1.0}
+        return {"occlusion_distance": 10.0, "mist_start": 0.0, "mist_depth": 100.0, "mist_falloff": 1.0}
     who = f"world '{world.name}'"
     mist = world.mist_settings
     return {

@@ -1,5 +1,6 @@
 """The passes of data, at the centres of pixels."""
 
+import bmesh
 import bpy
 
 from .. import parts
@@ -88,6 +89,34 @@ def pass_normal_mapped(scene):
 
     _corner(scene)
     bpy.data.objects["Ball"].material_slots[0].material = material(build)
+
+
+@case("PIXELS", passes=("UV",), filter_width=0.01, bounces=0, samples=16, quick=True, **_ONE_SAMPLE)
+def pass_uv_without_map(scene):
+    """A block without a map before walls with one."""
+    _corner(scene)
+    mesh = bpy.data.objects["Block"].data
+    mesh.uv_layers.remove(mesh.uv_layers[0])
+
+
+def _coarse_ball(bm):
+    bmesh.ops.create_icosphere(bm, subdivisions=1, radius=1.0)
+
+
+@case(passes=("Normal",), filter_width=0.01, bounces=0, samples=16, quick=True)
+def pass_normal_uneven(scene):
+    """Coarse smooth meshes under uneven scales: Cycles moves that into the world which no other object shares, and the others
+    not. By blocks, in which the outlines count little.
+    """
+    meshes = {name: parts.mesh_from_bmesh(name, _coarse_ball, smooth=True) for name in ("Alone", "Shared")}
+    for mesh in meshes.values():
+        mesh.materials.append(_plain((0.8, 0.3, 0.2)))
+    for name, mesh, x in (("Alone", "Alone", -2), ("One", "Shared", -0.7), ("Two", "Shared", 0.7), ("Own", "Shared", 2)):
+        thing = parts.place(scene, name, meshes[mesh], None, (x, 0, 0), (-0.4, 0.8, 1.2), (0.4, 0.3, 0.2))
+        # To Cycles an object with a material of its own shares nothing.
+        thing.material_slots[0].link = "OBJECT" if name == "Own" else "DATA"
+    sky(scene)
+    camera(scene, (0, -6, 1), (0, 0, 0))
 
 
 @case("PIXELS", passes=("Depth", "Position", "Normal"), filter_width=0.01, bounces=2, samples=16, **_ONE_SAMPLE)

@@ -89,6 +89,32 @@ def pass_environment(scene):
     _still_life(scene)
 
 
+@case(passes=("Combined", "Environment"), bounces=1, quick=True)
+def pass_environment_transparent(scene):
+    """The sky that a transparent film leaves out of the picture, around a ball and through a pane."""
+    scene.render.film_transparent = True
+    ball(scene, shader("ShaderNodeBsdfDiffuse", Color=(0.8, 0.4, 0.3)), segments=24)
+    pane = shader("ShaderNodeBsdfTransparent", Color=(0.9, 0.6, 0.3))
+    parts.place(scene, "Pane", parts.plane_mesh("Pane", 1.2), pane, (0.8, -1.0, 1.2), rotation=(1.4, 0, 0))
+    sky(scene)
+    camera(scene, (0, -4.2, 2.2), (0, 0, 0.85))
+
+
+@case(passes=("Ambient Occlusion",), bounces=1, quick=True)
+def pass_ambient_occlusion_coarse(scene):
+    """Smooth normals far from those of the faces: rays start on the curved surface. Without a world they end at 10."""
+    floor(scene)
+    parts.place(scene, "Cube", _smooth_cube(), shader("ShaderNodeBsdfDiffuse"), (0, 0, 0.8), rotation=(0, 0, 0.4))
+    camera(scene, (0, -4.2, 2.2), (0, 0, 0.85))
+
+
+def _smooth_cube():
+    mesh = parts.cube_mesh("Cube", 1.3)
+    for face in mesh.polygons:
+        face.use_smooth = True
+    return mesh
+
+
 @case(passes=("Ambient Occlusion",))
 def pass_ambient_occlusion(scene):
     _still_life(scene)

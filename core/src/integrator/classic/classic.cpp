@@ -106,10 +106,11 @@ void ClassicIntegrator::generate(std::span<const SampleAddress> addresses, std::
 void ClassicIntegrator::miss(const Branch &branch, const glm::dvec3 &eye, const glm::vec3 &direction, SampleResult &result) {
   if (branch.depth == 0)
     add_sky_guides(branch.features, result);
-  // A transparent film does not show the environment itself.
+  // A transparent film does not show the environment itself, but the environment's pass does.
   if (branch.depth == 0 && settings_.film_transparent) {
     result.alpha -= mean(branch.weight);
-    return;
+    if (!(settings_.passes & 1u << LANCER_PASS_ENVIRONMENT))
+      return;
   }
   if (!(branch.kinds & ~scene_.world.hidden_from))
     return;
@@ -149,7 +150,9 @@ void ClassicIntegrator::keep_vertex(size_t number, const SampleResult &result, s
 }
 
 void ClassicIntegrator::add(const Branch &branch, const glm::vec3 &light, bool environment, SampleResult &result) {
-  result.radiance += light;
+  // A transparent film leaves the environment behind it to the environment's pass.
+  if (!environment || !settings_.film_transparent || branch.depth > 0)
+    result.radiance += light;
   if (branch.features.open)
     result.albedo += branch.features.beta * light;
   if (branch.depth == 0)

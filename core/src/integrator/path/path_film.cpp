@@ -66,8 +66,10 @@ void PathFilm::add(const Path &path, const glm::vec3 &radiance, bool environment
   if (path.in_view) {
     const float top = largest(glm::abs(radiance)), limit = settings_.clamp_indirect / float(path.sharers);
     const glm::vec3 seen = indirect && limit > 0.0f && top > limit ? radiance * (limit / top) : radiance;
-    energy.clip(double(luminance(radiance - seen)));
-    result.radiance += seen;
+    if (!environment || !settings_.film_transparent) {
+      energy.clip(double(luminance(radiance - seen)));
+      result.radiance += seen;
+    }
     passes.add_seen(result, seen, environment);
     return;
   }

@@ -1,11 +1,13 @@
 // The light that paths find: lights hit by rays, and lights sampled at vertices.
 #include "integrator/path/path.h"
 #include "integrator/stages/lane_access.h"
+#include "integrator/stages/terminator.h"
 #include "sampling/color.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 namespace lancer {
 
@@ -95,9 +97,12 @@ void PathIntegrator::add_emission(const Path &path, const Surface &surface, cons
 void PathIntegrator::miss(size_t number) {
   Path &path = paths_[number];
   film_.miss(path);
-  // A transparent film does not show the environment itself, only the light that it gives.
-  if (path.in_view && settings_.film_transparent)
-    return film_.cut(path, mean(path.beta));
+  // A transparent film does not show the environment itself, only the light that it gives. The environment's pass shows both.
+  if (path.in_view && settings_.film_transparent) {
+    film_.cut(path, mean(path.beta));
+    if (!(settings_.passes & 1u << LANCER_PASS_ENVIRONMENT))
+      return;
+  }
   if (!(path.kinds & ~scene_.world.hidden_from))
     return;
   const Environment &environment = scene_.lights.environment();
@@ -161,10 +166,12 @@ void PathIntegrator::look_around(uint32_t lane) {
   if (!(block_.looks_by_next >> lane & 1))
     return;
   const float occlusion = block_.occlusion_weight[lane];
-  if (block_.sampled >> lane & 1) {
+  const glm::dvec3 lift = terminator_offset(scene_.geometry, surfaces_.surface(lane), get(block_.viewer_ns, lane),
+                                            get(block_.viewer_ng, lane), get(block_.wi, lane));
+  if (block_.sampled >> lane & 1 && lift == glm::dvec3(0.0)) {
     film_.keep_occlusion(path, occlusion);
   } else {
-    // A next ray without weight is not traced, so its direction needs an occlusion ray.
+    // A next ray without weight is not traced, and one near the terminator starts elsewhere: they need an occlusion ray.
     film_.add_open(path, -glm::vec3(occlusion));
     send_occlusion_ray(lane, get(block_.wi, lane), glm::vec3(occlusion));
   }
@@ -172,8 +179,13 @@ void PathIntegrator::look_around(uint32_t lane) {
 
 void PathIntegrator::send_occlusion_ray(uint32_t lane, const glm::vec3 &wi, const glm::vec3 &weight) {
   const Path &path = paths_[waiting_[lane].number];
-  Ray ray = leave(surfaces_.surface(lane), glm::dvec3(wi), occlusion_reach_);
-  ray.kinds = LANCER_RAY_SHADOW;
+  LightSample around;
+  around.wi = glm::dvec3(wi);
+  around.distance = std::numeric_limits<double>::infinity();
+  // As the rays to lights it starts on the curved surface of a smooth mesh.
+  Ray ray =
+      shadow_ray(scene_.geometry, surfaces_.surface(lane), get(block_.viewer_ns, lane), get(block_.viewer_ng, lane), around);
+  ray.tmax = occlusion_reach_;
   shadows_.push(ray, {.slot = path.slot, .occlusion = true}, weight, path.passed_through);
   if (shadows_.asks_light_path())
     shadows_.set_light_path(path.asking_path());
