@@ -1,5 +1,7 @@
 """The Principled BSDF as a record: the inputs of each Blender version under their newest names."""
 
+import bpy
+
 from ..bindings import snapshot
 from ..bindings.enums import LobeKind, Rules
 from ..bindings.shading import NodeRef
@@ -101,7 +103,9 @@ def _base_color(surface, site, values):
 def _emission(surface, site):
     graph = surface.graph
     strength = graph.parameter(site, PRINCIPLED["emission_strength"], 1.0)
-    if is_constant(strength, 0.0):
+    # Cycles 5.0 ignores a constant negative strength; older and newer versions remove light, as Emission does.
+    ignored = not isinstance(strength, NodeRef) and strength < 0.0 and (5, 0) <= bpy.app.version < (5, 1)
+    if is_constant(strength, 0.0) or ignored:
         return (0.0, 0.0, 0.0)
     color = surface.color(site, PRINCIPLED["emission_color"], (0.0, 0.0, 0.0))
     surface.estimate(color, strength)

@@ -181,9 +181,14 @@ def light_mesh(scene, scale):
     parts.place(scene, "Glow", parts.plane_mesh("Glow", 1.0), glow, (1.0, -0.6, 1.8), scale, rotation=(0.4, 0.5, 0))
 
 
-@case("LIGHT", **{**_FIELDS, "quick": False})
-def light_negative_mesh(scene):
+@variants("LIGHT", values={"emission": False, "principled": True}, **{**_FIELDS, "quick": False})
+def light_negative_mesh(scene, principled):
+    """Cycles 5.0 alone takes a negative strength of Principled as 0."""
     _spot(scene)
     parts.add_light(scene, "Base", "SUN", 3.0, (0.5, 0.5, 3.0), angle=0.0)
-    glow = shader("ShaderNodeEmission", Color=(1.0, 0.7, 0.4), Strength=-5.0)
+    if principled:
+        color = "Emission_Color" if bpy.app.version >= (4, 0) else "Emission"
+        glow = shader("ShaderNodeBsdfPrincipled", Emission_Strength=-5.0, **{color: (1.0, 0.7, 0.4)})
+    else:
+        glow = shader("ShaderNodeEmission", Color=(1.0, 0.7, 0.4), Strength=-5.0)
     parts.place(scene, "Glow", parts.plane_mesh("Glow", 1.0), glow, (1.0, -0.6, 1.8), rotation=(0.4, 0.5, 0))
