@@ -205,7 +205,7 @@ class Scene(_Handle, SceneProbes):
         return self._check(self.library.lancer_scene_wait(self.handle, int(seconds * 1000))) is not Status.RUNNING
 
     def messages(self):
-        """Return a line for each thing that the library left out or replaced."""
+        """Return one line for each part of the scene that the library left out or replaced."""
         needed = ctypes.c_size_t()
         self._check(self.library.lancer_scene_messages(self.handle, None, 0, ctypes.byref(needed)))
         text = ctypes.create_string_buffer(max(1, needed.value))

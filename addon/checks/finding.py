@@ -53,7 +53,7 @@ KINDS = {
 
 # Key and text for opaque surfaces that overlap in one plane and look alike.
 IN_ONE_PLANE = "feature:faces in one plane"
-SHADOWED = "Cycles would show them darker, down to black, as each shadows the other there"
+SHADOWED = "Cycles would show them darker, down to black, because each shadows the other there"
 
 
 def told_place(place):

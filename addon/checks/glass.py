@@ -50,7 +50,7 @@ def _check_edges(subject, number, mesh, row, keys, clear):
         ),
         (
             faults.flipped,
-            "glass faces look opposite ways at {}: light takes the inside for the outside",
+            "glass faces point in opposite directions at {}: inside and outside are confused",
             "in Edit Mode, Mesh > Normals > Recalculate Outside",
         ),
         (
@@ -85,7 +85,7 @@ def _check_turned(subject, number, mesh, row, keys, clear):
             number,
             mesh,
             row,
-            f"glass is inside out: {told_number(len(faces), 'face')} of a closed body look inward, as if it were air in glass",
+            f"glass is inside out: {told_number(len(faces), 'face')} of a closed body point inward, as if it were air in glass",
             "in Edit Mode, Mesh > Normals > Flip",
             len(faces),
             faces[0],

@@ -121,7 +121,7 @@ def _words(subject, number, mesh, severity, count, whole):
     where = told_number(count, "face")
     if _has_flipped(subject, number, mesh):
         return (
-            f"faces look opposite ways, and smooth normals turn away on {where}",
+            f"faces point in opposite directions, and smooth normals turn away on {where}",
             "in Edit Mode, Mesh > Normals > Recalculate Outside",
         )
     if whole:

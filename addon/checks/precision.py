@@ -16,7 +16,7 @@ _WHOLE_FACE = 32.0
 _WIDTH = 4.0
 _SHARE_OF_FACES = 0.01
 _SHARE_OF_NEEDLES = 0.1
-# An object whose position has steps of an eighth of its size stands visibly beside its true position.
+# An object whose position has steps of an eighth of its size is visibly displaced from its true position.
 _WHOLE_OBJECT = 8.0
 # Rounding errors of 2^-25 in a matrix of unit columns turn normals by 2^-25 over the volume: at 2^-20 by 2^-5, 2 degrees.
 _FLATTEST = 2.0**-20

@@ -15,7 +15,7 @@ from ..bindings import elf
 from ..bindings.abi import LancerError
 from . import loaded_libraries
 
-MISSING = "Open Image Denoise is missing: this Blender brings no library libOpenImageDenoise"
+MISSING = "Open Image Denoise is missing: this Blender contains no library libOpenImageDenoise"
 CPU = 1
 FLOAT3 = 3
 CANCELLED = 6

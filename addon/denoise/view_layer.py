@@ -76,7 +76,7 @@ def _guides(session, poll, tell):
     if set(_GUIDES) <= set(session.settings.passes):
         return [session.read(source) for source in _GUIDES]
     if tell is not None:
-        tell("Denoising: looking at surfaces")
+        tell("Denoising: rendering albedo and normals")
     rendered = session.statistics().samples // (session.camera.region_width * session.camera.region_height)
     samples = max(1, min(rendered, _GUIDE_SAMPLES))
     settings = dataclasses.replace(session.settings, passes=(Pass.COMBINED, *_GUIDES), samples=samples)

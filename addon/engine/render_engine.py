@@ -195,7 +195,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             if (result.resolution_x, result.resolution_y) != (camera.region_width, camera.region_height):
                 expected = f"{camera.region_width} x {camera.region_height}"
                 self.end_result(result, cancel=True)
-                raise LancerError(f"Blender wants {result.resolution_x} x {result.resolution_y} pixels, not {expected}")
+                raise LancerError(f"Blender expects {result.resolution_x} x {result.resolution_y} pixels, not {expected}")
 
             def show():
                 passes.fill(result.layers[0], session.read, wanted)

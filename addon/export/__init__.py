@@ -1,1 +1,1 @@
-"""The only place that reads Blender's data: one file for each kind of thing."""
+"""The only room that reads Blender's scenes: one file for each kind of data."""

@@ -1,4 +1,4 @@
-"""Arrays of Blender's meshes, from wherever the running Blender keeps them, and their values at the corners of triangles."""
+"""Arrays of Blender's meshes, read where the running Blender stores them, and their values at the corners of triangles."""
 
 import ctypes
 

@@ -158,6 +158,7 @@ def _lens(data, kind, matrix, clip_start, depsgraph, who, messages):
         messages.add(f"{who}: its focus distance is {distance:g}, everything is kept sharp")
         return 0.0, 1.0
     if kind == CameraKind.ORTHOGRAPHIC and bpy.app.version < (4, 0):
-        # Before 4.0 Cycles puts the lens on the near clipping plane: the same cone of rays is wider and longer at the camera.
+        # Before 4.0 Cycles puts the lens on the near clipping plane. At the camera, the same cone of rays is wider and its
+        # focus more distant.
         return radius * (distance + clip_start) / distance, distance + clip_start
     return radius, distance

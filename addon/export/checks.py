@@ -24,7 +24,7 @@ EMPTY_PASSES = {
     "CLASSIC": frozenset({Pass.AMBIENT_OCCLUSION, *_LIT}),
     "NORMALS": frozenset({Pass.EMISSION, Pass.ENVIRONMENT, Pass.AMBIENT_OCCLUSION, *_LIT}),
 }
-# Look up once which properties this Blender has: a failing getattr per object takes as long as all other checks.
+# Find out once which properties this Blender has: a failing getattr per object takes as long as all other checks.
 _OF_OBJECTS = bpy.types.Object.bl_rna.properties
 _HAS_LINKING = "light_linking" in _OF_OBJECTS
 _HAS_CATCHER = "is_shadow_catcher" in _OF_OBJECTS
@@ -101,7 +101,7 @@ def check_object(thing, scene, messages):
     if getattr(cycles, "is_caustics_receiver", False):
         who = f"object '{thing.name}'"
         messages.add(
-            f"{who}: shadow caustics are not supported, it receives those that paths find by themselves",
+            f"{who}: shadow caustics are not supported, only the caustics that paths find are shown",
             "feature:shadow caustics",
         )
     if thing.modifiers:

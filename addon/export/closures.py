@@ -128,7 +128,7 @@ def _toon(surface, site, weight):
 
 
 def _portal(surface, site, weight):
-    surface.graph.tell(site, "Ray Portal is not supported, rays pass straight on")
+    surface.graph.tell(site, "Ray Portal is not supported, rays pass straight through")
     _transparent(surface, site, weight)
 
 

@@ -55,7 +55,7 @@ def _light_paths(own, cycles):
     if theirs:
         told = _listed([words for _, words in theirs])
         severity = Severity.DIFFERENT if any(_changed(cycles, name) for name, _ in theirs) else Severity.HINT
-        yield f"Cycles limits light by {told}, Lancer by {_listed(ours)}: set Light Paths alike to compare", severity
+        yield f"Cycles limits light by {told}, Lancer by {_listed(ours)}: set both alike for a comparison", severity
 
 
 def filter_of(cycles):

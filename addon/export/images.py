@@ -82,7 +82,7 @@ def _frame_path(image, user, tell):
     if user is None:
         # The node's ImageUser maps frames to files; without one Blender would return the file of frame 0.
         tell(
-            f"image '{image.name}' is a sequence, of which only the file that it was made from is used",
+            f"image '{image.name}' is a sequence, only the file from which it was made is used",
             "feature:image sequence",
         )
         path = image.filepath
@@ -97,7 +97,7 @@ def _read_all(image, path, tell):
     if path:
         return _read_file(image, path, tell)
     if image.source == "MOVIE":
-        tell(f"image '{image.name}' is a movie, of which only the frame that Blender shows is used", "feature:movie as image")
+        tell(f"image '{image.name}' is a movie, only the frame that Blender shows is used", "feature:movie as image")
     # Blender's bytes in memory equal the file's, unless Blender has divided them by alpha.
     is_file = image.source == "FILE" and image.packed_file is None and not image.is_dirty
     if is_file and (not image.has_data or image.is_float or image.alpha_mode == "PREMUL"):

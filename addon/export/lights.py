@@ -156,7 +156,7 @@ def _check(thing, light, who, messages):
             "feature:bounce limit of a lamp",
         )
     if getattr(light, "use_custom_distance", False) and bpy.app.version < (4, 2):
-        messages.add(f"{who}: custom distance is not supported, its light reaches on as in Cycles")
+        messages.add(f"{who}: custom distance has no effect, as in Cycles")
     if not getattr(cycles, "use_multiple_importance_sampling", True):
         messages.add(
             f"{who}: without multiple importance sampling Cycles hides it from mirrors and glass, here they show it",

@@ -143,7 +143,7 @@ def _from_nodes(material, graph):
     who, messages, tree = graph.owner, graph.messages, material.node_tree
     output = output_node(tree, "OUTPUT_MATERIAL") if tree is not None else None
     if output is None:
-        messages.add(f"{who}: has no Material Output node that Cycles takes, black is used", severity=Severity.WRONG)
+        messages.add(f"{who}: has no Material Output node that Cycles uses, black is used", severity=Severity.WRONG)
         return {"lobes": ()}
     site = Site(output)
     has_surface = graph.is_linked(site, ("Surface",))

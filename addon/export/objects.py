@@ -52,7 +52,7 @@ class Objects:
         self._placed = {}
         self._wanted = {}
         self._checked = set()
-        # Query collections only if needed: Blender's call per object takes longer than all other reads.
+        # Query collections only if some are special: Blender's call per object takes longer than all other reads.
         self._asks_layer = _has_special_collections(self.view_layer)
 
     def sight(self, thing, narrowed):

@@ -72,7 +72,7 @@ def missed(numbers, settings):
     if target <= 0.0 or bound <= target or numbers["ended_by"] in (TARGET, CANCELLED):
         return
     if not math.isfinite(bound):
-        yield f"{percent(target)} was not reached: the error is not known before there are two samples a pixel"
+        yield f"{percent(target)} was not reached: the error is unknown until each pixel has two samples"
         return
     # The error falls with the square root of the number of samples.
     more = (bound / target) ** 2
@@ -106,7 +106,7 @@ def _accuracy(numbers, settings):
         low, high = percent(numbers["error_low"]), percent(numbers["error_high"])
         text = f"error {percent(numbers['error'])}, with 95 % confidence between {low} and {high}; {ended}"
     else:
-        text = f"error unknown: it takes two samples a pixel; {ended}"
+        text = f"error unknown until each pixel has two samples; {ended}"
     return [text, *biases(numbers, settings)]
 
 
@@ -115,11 +115,12 @@ def biases(numbers, settings):
     if numbers["error_cannot_exclude"] > _NOTHING and math.isfinite(numbers["error_cannot_exclude"]):
         yield f"light in flashes that no sample has met could add {percent(numbers['error_cannot_exclude'])} to the error"
     if settings.clamp_indirect > 0.0:
-        yield f"clamping has taken {percent(numbers['error_clipped'])} of the light: the picture is that much too dark"
+        yield f"clamping has removed {percent(numbers['error_clipped'])} of the light: the picture is too dark by this share"
     if settings.integrator == Integrator.PATH:
         missing = numbers["error_missing"]
         if math.isinf(missing):
-            yield f"light beyond {settings.max_bounces} bounces is left out, and the last of them finds no less than the others"
+            last = "the last bounce finds no less light than the one before"
+            yield f"light beyond {settings.max_bounces} bounces is left out, and {last}"
         elif missing > _NOTHING:
             yield f"light beyond {settings.max_bounces} bounces is left out: about {percent(missing)}"
     if numbers["denoised"]:

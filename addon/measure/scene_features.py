@@ -115,7 +115,7 @@ def _sky_varies(snapshot):
     return isinstance(snapshot.world.radiance, NodeRef)
 
 
-# ---- how it is taken away ----
+# ---- removal of a feature ----
 
 
 def _each_material(plain):
@@ -271,7 +271,7 @@ def without(snapshot, name, library=None):
 
 
 _KERNELS = {
-    "path": "paths, in vector registers, by the code that the surfaces they meet need",
+    "path": "paths in vector registers, sorted by the code of the surfaces that they hit",
     "classic": "Classic ray tracing",
     "normals": "directions of surfaces",
 }

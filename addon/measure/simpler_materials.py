@@ -203,10 +203,9 @@ def _is_of_the_surface(owner, name):
 
 
 def _varied(material, pictured):
-    """Return the nodes of parameters, except normals, that images feed or, if not pictured, that only other nodes vary.
-
-    If a node controls the transmittance, it and the lobes' weights depend on each other and are left out.
-    """
+    """Return the numbers of the nodes whose results are parameters other than normals and vary over the surface. pictured: only
+    results that depend on images; otherwise only results that do not. If a node controls the transmittance, the material's own
+    parameters and the lobes' weights are left out, because they depend on each other."""
     nodes, found = material.nodes, set()
     if not nodes:
         return found

@@ -77,7 +77,7 @@ def measure(snapshot, seconds=10.0, poll=None, tell=None, library=None):
         even = run.even(small, begun + 2.0 * _EVEN_SHARE * seconds)
         refined = run.refined(large)
     if not (even and refined):
-        raise LancerError("so small a picture cannot tell its error")
+        raise LancerError("the picture is too small for an estimate of its error")
     return Measured(tuple(refined), tuple(even), _pixels(large), _pixels(small), begun - started, classic)
 
 
@@ -86,7 +86,7 @@ class _Run:
 
     def __init__(self, scene, snapshot, until, poll, show):
         self.scene, self.camera, self.poll, self.until, self.show = scene, snapshot.camera, poll, until, show
-        self.doing = "A look at the scene"
+        self.doing = "Preparing the scene"
         # A target makes the film ready for refinement.
         self.refining = dataclasses.replace(snapshot.settings, target_error=1e-6, time_limit=0.0, samples=_DEEPEST)
         self.settings = dataclasses.replace(self.refining, target_error=0.0)
@@ -103,7 +103,7 @@ class _Run:
     def even(self, camera, until):
         """Return the points with equal samples for all pixels: at least FIRST_LOOK, then as long as time allows."""
         points = []
-        self.doing = "All pixels alike"
+        self.doing = "Equal samples for all pixels"
         with Session(self.scene, camera, self.settings) as session:
             for done in self._doubling(session, camera, points):
                 # The next range takes as long as all ranges before it.
@@ -114,7 +114,7 @@ class _Run:
 
     def refined(self, camera):
         points = []
-        self.doing = "Samples where the error is"
+        self.doing = "Samples where the error is largest"
         with Session(self.scene, camera, self.refining) as session:
             for done in self._doubling(session, camera, points):
                 if done >= FIRST_LOOK:

@@ -33,7 +33,7 @@ class LANCER_OT_measure_features(measuring.Measuring, bpy.types.Operator):
     )
 
     seconds: bpy.props.FloatProperty(
-        name="Seconds", description="Time of the measurement; more seconds give narrower figures", min=0.1, default=10.0
+        name="Seconds", description="Time of the measurement; more seconds give narrower intervals", min=0.1, default=10.0
     )
 
     def work(self):

@@ -74,7 +74,7 @@ class LancerSceneSettings(bpy.types.PropertyGroup):
     )
     max_bounces: IntProperty(
         name="Max Bounces",
-        description="Most bounces of light between surfaces; in Classic, the depth of reflections and refractions",
+        description="Largest number of bounces of light between surfaces; in Classic, the depth of reflections and refractions",
         min=0,
         soft_max=64,
         max=1024,
@@ -90,7 +90,7 @@ class LancerSceneSettings(bpy.types.PropertyGroup):
     )
     transparent_bounces: IntProperty(
         name="Transparent Bounces",
-        description="Most transparent surfaces, one behind the other, that light and camera rays pass; beyond is black",
+        description="Largest number of transparent surfaces that a ray passes in a row; the next one shows only its emission",
         min=0,
         soft_max=64,
         max=1023,
@@ -172,7 +172,7 @@ def add_watched(scene):
     """Add the properties with an update function. As annotations they make bpy 4.2 crash at exit."""
     scene.integrator = EnumProperty(
         name="Integrator",
-        description="Method of computing light",
+        description="Method by which light is computed",
         items=(
             (
                 "PATH",
@@ -195,7 +195,7 @@ def add_watched(scene):
     )
     scene.use_pass_error = BoolProperty(
         name="Lancer Error",
-        description="Standard error of each pixel's luminance: 95 % of the pixels are within 1.96 times of it",
+        description="Standard error of each pixel's luminance: 95 % of the pixels are correct within 1.96 times this value",
         default=False,
         update=_passes_changed,
     )

@@ -59,7 +59,7 @@ class LANCER_RENDER_PT_uses(LancerRenderPanel, bpy.types.Panel):
             start, rest = cost.text.split("; ", 1)
             sentence(column, context, start, "INFO")
             sentence(column, context, rest)
-            told = f"about {cost.seconds:.1f} s, {_share(cost.share)} give or take {_share(cost.uncertainty)}"
+            told = f"about {cost.seconds:.1f} s, {_share(cost.share)} plus or minus {_share(cost.uncertainty)}"
             sentence(column, context, f"{told}. Without: {cost.without}")
         if costs.skipped:
             sentence(column, context, f"Not measured for lack of time: {len(costs.skipped)} more")

@@ -77,7 +77,7 @@ def test_time_ends_the_render_on_powers_of_two(case):
 def test_biases_are_declared(case):
     got = case("biases")
     assert got["numbers"]["error_clipped"] > 0.0 and got["numbers"]["error_missing"] > 0.0
-    assert "clamping has taken" in got["console"] and "light beyond 1 bounces is left out" in got["console"]
+    assert "clamping has removed" in got["console"] and "light beyond 1 bounces is left out" in got["console"]
 
 
 @both

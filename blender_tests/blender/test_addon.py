@@ -106,7 +106,7 @@ def test_panels(case):
     assert any("50 %" in text for text in uses["measuring"]) and "lancer.measure_features" not in uses["measuring"]
     sampling = shown["LANCER_RENDER_PT_sampling"]
     assert "lancer.measure_quality" in sampling["plain"] and "lancer.measure_quality" in sampling["measuring"]
-    assert sampling["measuring quality"][-2:] == ["Measuring, 25 % (Esc stops)", "All pixels alike"]
+    assert sampling["measuring quality"][-2:] == ["Measuring, 25 % (Esc stops)", "Equal samples for all pixels"]
     assert "lancer.measure_quality" not in sampling["measuring quality"]
     words = (": about ", ": at most ", ": the time is unknown")
     told = [text.split(":")[0] for text in sampling["quality"] if any(word in text for word in words)]

@@ -10,7 +10,7 @@ EXPECTED = {
     "two planes": ("coincident", "WRONG", "Plane", "same plane"),
     "glass on glass": ("coincident", "WRONG", "", "touch exactly"),
     "copy in place": ("coincident", "DIFFERENT", "Ball.001", "exactly where object 'Ball' does"),
-    "flipped faces": ("normals", "", "Flipped", "look opposite ways"),
+    "flipped faces": ("normals", "", "Flipped", "point in opposite directions"),
     "far from the origin": ("precision", "WRONG", "Ball", "no larger than a few steps"),
     "tiny in its place": ("precision", "WRONG", "Ball", "hardly more than the step"),
     "light that grows": ("closures", "WRONG", "Ball", "1.6 times the light"),

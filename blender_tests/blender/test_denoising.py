@@ -67,7 +67,7 @@ def test_normals_have_no_noise(case):
     assert got["combined is raw"] and got["passes"] == ["Combined"] and got["statistics"]["denoised"] == ""
 
 
-GUIDES = "Denoising: looking at surfaces"
+GUIDES = "Denoising: rendering albedo and normals"
 
 
 @pytest.mark.parametrize("how, said", [("poll", 2), ("at once", 1)])

@@ -53,7 +53,7 @@ def test_light_paths_that_differ_are_told_in_one_line(case):
     } and len(severities) == 8
 
     def line(theirs, ours):
-        return [f"scene 'Scene': Cycles limits light by {theirs}, Lancer by {ours}: set Light Paths alike to compare"]
+        return [f"scene 'Scene': Cycles limits light by {theirs}, Lancer by {ours}: set both alike for a comparison"]
 
     rest = "Filter Glossy 1 and Clamp Indirect 10"
     kinds = "Diffuse 4, Glossy 4"
@@ -103,7 +103,7 @@ def test_what_is_left_out_says_what_is_shown_instead(case):
         "world 'World': volumes are not supported, its background alone is shown",
     }
     if got["version"] < [4, 2]:
-        expected.add("light 'Light': custom distance is not supported, its light reaches on as in Cycles")
+        expected.add("light 'Light': custom distance has no effect, as in Cycles")
     assert set(got["told"]) == expected and len(got["told"]) == len(expected)
 
 

@@ -337,4 +337,4 @@ def test_a_cube_of_sequences_shows_their_first_files(which, tmp_path):
     got = blenders.run(which, tmp_path, "world_cases", "sequence")
     # 0.1, 0.2 ... of 255.
     assert got["red"] == [26, 51, 77, 102, 128, 153]
-    assert len(got["messages"]) == 6 and all("is a sequence, of which only the file" in line for line in got["messages"])
+    assert len(got["messages"]) == 6 and all("is a sequence, only the file" in line for line in got["messages"])

@@ -30,7 +30,7 @@ def _variants(context):
     measuring.running[name] = ("lancer.measure_features", 0.5, "3 materials use refraction")
     yield "measuring"
     del measuring.running[name]
-    measuring.running[name] = ("lancer.measure_quality", 0.25, "All pixels alike")
+    measuring.running[name] = ("lancer.measure_quality", 0.25, "Equal samples for all pixels")
     yield "measuring quality"
     del measuring.running[name]
     bpy.ops.lancer.measure_quality(seconds=0.1)
