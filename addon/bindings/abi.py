@@ -81,7 +81,8 @@ def library_path():
     """Return the path of the newest library in addon/lib; if there is none, the path at which the build writes it.
 
     In the zips, the file name contains a hash of the content. Without the hash, a process that has loaded the old file would
-    get the old library again for an updated file of the same name."""
+    get the old library again for an updated file of the same name.
+    """
     folder = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "lib")
     stem, ending = _FILES.get(sys.platform, ("liblancer", ".so"))
     found = []

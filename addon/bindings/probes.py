@@ -72,7 +72,8 @@ class SceneProbes:
 
     def lobes(self, material, wo=(0.0, 0.0, 1.0)):
         """Return a material's lobes for the local direction wo, as records of lancer_lobe_info, its emission (3,) and its
-        transmittance (3,)."""
+        transmittance (3,).
+        """
         wo = _rows(1, wo, np.float32, 3)
         emission, transmittance = np.zeros(3, np.float32), np.zeros(3, np.float32)
         count = ctypes.c_uint32()

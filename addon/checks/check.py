@@ -21,7 +21,8 @@ def check_snapshot(snapshot, thorough=True, poll=None):
 
     thorough: run all checks in full. Otherwise run only the quick checks of a render, and return a hint only if it means a
     difference from Cycles. poll(share) is called between steps with the share done, or None; an exception from it ends the
-    check."""
+    check.
+    """
     # The core leaves out geometry that is not finite, with a message; here NaN compares as false.
     with np.errstate(all="ignore"):
         found = _all_findings(Subject(snapshot, thorough, poll))

@@ -1,8 +1,8 @@
-"""Normals of meshes that stand in one place alone, under an uneven scale or shear, as final renders of Cycles have them.
+"""Normals of meshes with a single instance under an uneven scale or shear, as in final renders of Cycles.
 
-Cycles moves such a mesh into the world first: each vertex then has a normal of length 1, and faces interpolate these. Of other
-meshes it interpolates the object's normals and moves the result. The core does the latter with all meshes, with normals of any
-length: a normal divided by its length in the world counts as much as Cycles' own.
+Cycles first transforms such a mesh to the world: there, each vertex has a normal of length 1, and faces interpolate these
+normals. For other meshes, Cycles interpolates the object's normals and transforms the result. The core treats all meshes in the
+second way, and accepts normals of any length: a normal divided by its length in the world gives the result of the first way.
 """
 
 from dataclasses import replace
@@ -13,15 +13,16 @@ from ..bindings.enums import InstanceKind
 from .arithmetic import is_constant
 from .attributes import has_tangents
 
-# An unevenness below this turns no normal by more; matrices of even scales are single precision, 1e-7 an element.
+# An unevenness below this limit turns no normal by more than the limit. Matrices of even scales have errors of
+# single precision, 1e-7 per element.
 _EVEN = 1e-5
 _MESH = int(InstanceKind.MESH)
 
 
 def with_even_normals(meshes, table, geometries, materials):
-    """(meshes, table) with other normals for what Cycles moves into the world.
+    """Return (meshes, table) with other normals for the meshes that Cycles transforms to the world.
 
-    geometries: of each name of the table, equal for objects of one geometry of Cycles. materials: by the table's slots.
+    geometries: of each name of the table; equal for objects that share one geometry in Cycles. materials: by the table's slots.
     """
     numbers = np.unique(np.array(geometries, np.int64).reshape(-1), return_inverse=True)[1][table.name_indices]
     alone = (np.bincount(numbers)[numbers] == 1) & (table.kinds == _MESH) if len(numbers) else np.zeros(0, bool)
@@ -32,7 +33,7 @@ def with_even_normals(meshes, table, geometries, materials):
     for row in rows.tolist():
         number = int(mesh_numbers[row])
         mesh = meshes[number]
-        # Tangents are laid across the object's own normals, whatever Cycles does with the mesh.
+        # Tangents are computed from the object's own normals, whether or not Cycles transforms the mesh.
         if mesh.normals is None or has_tangents(mesh) or _is_displaced(table, row, materials):
             continue
         moved = replace(mesh, normals=_divided(mesh.normals, np.asarray(table.matrices[row], float)[:, :3]))

@@ -73,7 +73,7 @@ class Instances:
         self._checked_hair = set()
         self._names = []  # of rows that share a look and a name
         self._geometries = {}
-        self.geometries = []  # of the same rows: equal numbers for what Cycles has one geometry for
+        self.geometries = []  # of the same rows: equal numbers for objects that share one geometry in Cycles
         self._looks = array("I")
         self._row_of = array("I")  # of entries that show a mesh
         self._entries = array("I")

@@ -4,7 +4,8 @@ In a window Blender renders in a separate thread while the main thread draws and
 and remove data. In background mode, and when a script waits for the render, there is only the main thread.
 
 Only the main thread may start a timer, and F12 calls no Python there. So a timer runs as long as Lancer is the engine of any
-scene, slowly before a render and fast during one."""
+scene, slowly before a render and fast during one.
+"""
 
 import contextlib
 import contextvars

@@ -205,7 +205,8 @@ def _is_of_the_surface(owner, name):
 def _varied(material, pictured):
     """Return the numbers of the nodes whose results are parameters other than normals and vary over the surface. pictured: only
     results that depend on images; otherwise only results that do not. If a node controls the transmittance, the material's own
-    parameters and the lobes' weights are left out, because they depend on each other."""
+    parameters and the lobes' weights are left out, because they depend on each other.
+    """
     nodes, found = material.nodes, set()
     if not nodes:
         return found

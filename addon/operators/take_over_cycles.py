@@ -3,7 +3,7 @@
     from addon.operators.take_over_cycles import take_over
     take_over(scene)
 
-Cycles' settings stay as they are. Those that the export follows by itself need no copy.
+Cycles' settings stay as they are. Settings that the export reads itself need no copy.
 """
 
 import bpy
@@ -12,10 +12,10 @@ from ..bindings.abi import LancerError
 from ..denoise import view_layer as denoise
 from ..export.cycles_settings import filter_of
 
-# Cycles' threshold bounds an estimate for each pixel, which promises no error of the picture: at thresholds of 0.05, 0.02 and
-# 0.01 true errors of five scenes were 6 to 19 %, 4 to 9 % and 2 to 7 %. Three times the threshold lies within all three ranges.
+# Cycles' threshold bounds an estimate for each pixel, not the error of the picture. At thresholds of 0.05, 0.02 and 0.01, the
+# true errors of five scenes were 6 to 19 %, 4 to 9 % and 2 to 7 %. Three times the threshold lies within all three ranges.
 ERROR_OF_THRESHOLD = 3.0
-# Single precision keeps seven digits.
+# Single precision has seven digits.
 _SAME = 1e-6
 _GLASS = ("film_transparent_glass", "film_transparent_roughness")
 _OFF = "the Cycles add-on is off, there are no settings to take over"
@@ -42,7 +42,7 @@ def take_over(scene):
         if name not in _GLASS:
             setattr(scene.lancer, name, value)
     if not changes.keys().isdisjoint(_GLASS):
-        # Where none of Lancer's own is set, Cycles' hold.
+        # Cycles' settings hold if none of Lancer's own is set.
         for name in _GLASS:
             scene.lancer.property_unset(name)
     return changes

@@ -120,7 +120,7 @@ struct Energy {
   // two bounces. Once indirect light has spread, it falls off at least as fast as this series. Returns infinity if the last
   // bounce finds no less light than the bounce before.
   double beyond() const {
-    // Lights of negative emission find negative light.
+    // With negative emission, the light found by a bounce may be negative.
     const double found = std::abs(last), before = std::abs(before_last);
     if (found <= 0.0)
       return 0.0;

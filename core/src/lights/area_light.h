@@ -34,8 +34,8 @@ template <class F> struct AreaNumbers {
         spread_scale(light[&Light::spread_scale]), plane_tolerance(light[&Light::plane_tolerance]),
         ellipse(light[&Light::ellipse]), narrowed(which & (spread_scale != D(0.0))), skewed(which & (skew != D(0.0))) {}
 
-  // Returns the coordinates, in units of the half lengths, of the foot of the perpendicular from a point that v leads to from
-  // the middle: along the sides of a parallelogram.
+  // Returns the coordinates of the foot of the perpendicular from a point, along the sides of a parallelogram, in units of the
+  // half lengths. v: from the middle to the point.
   LANCER_LANE Vector2<D> place(const Double3Of<F> &v) const {
     const D along = dot(v, x), b = dot(v, y) / half_y, a = along / half_x;
     return {any(skewed) ? select(skewed, (along - b * skew) / half_x, a) : a, b};
@@ -78,7 +78,7 @@ template <class F> LANCER_LANE AreaPart<F> area_part(const AreaNumbers<F> &light
   const Double3Of<F> v = p - light.position;
   const D radius = -dot(v, light.z) * light.tan_half_spread, half_x = light.half_x, half_y = light.half_y;
   const Vector2<D> foot = light.place(v);
-  // The coordinate along x of a parallelogram changes fastest across its other side.
+  // The coordinate along x changes fastest perpendicular to the parallelogram's other side.
   const D lean = light.skew / half_y, reach_y = radius / half_y;
   const D reach_x = select(light.skewed, radius * sqrt(one + lean * lean) / half_x, radius / half_x);
   const D low_x = max(foot.x - reach_x, least), low_y = max(foot.y - reach_y, least);
@@ -96,7 +96,8 @@ template <class F> LANCER_LANE AreaPart<F> area_part(const AreaNumbers<F> &light
 // little over it. The same holds for a lamp whose solid angle is below kLeastSolidAngle, where the computed solid angle is
 // mostly rounding error.
 inline constexpr double kLeastDiagonal = 1e-2, kLeastSolidAngle = 1e-9;
-// A parallelogram that fills the hemisphere up to rounding has no directions left to tell its triangles apart.
+// A parallelogram whose solid angle exceeds this bound fills the hemisphere up to rounding, where the directions of its
+// triangles are undefined.
 inline constexpr double kMostSolidAngle = 6.28;
 
 // Returns the part of a parallelogram that is sampled, in the light's axes. v: from the point to the light's middle.

@@ -134,7 +134,8 @@ Pilot::Look Pilot::find_pixels() {
   }
   looks_ = 1;
   darkest_ = std::max(0.01 * sum / looked_at, 1e-30);
-  // The other pixels mostly show the background at the cost of a camera ray; an even background is not traced by the picture.
+  // Pixels without noise mostly show the background and cost one camera ray per sample. The picture does not trace an even
+  // background.
   const uint64_t cost_of_rays = kPilot.cost.camera_ray * kSamples * (traced - pixels_.size());
   if (has_even_background(scene_, camera_))
     plain.cost -= cost_of_rays;

@@ -11,8 +11,8 @@ namespace lancer {
 //   cost = camera_ray * camera rays + ray * (bounce rays + shadow rays) + vertex * vertices.
 // The weights are fitted to the times of 26 public files, each with four ways of splitting, and predict the ratios of times
 // within a file to 10 % (one standard deviation). `make pilot` repeats the fit on the project's scenes: over seventeen of them,
-// both these weights and the fitted ones predict to 6 %, and the fit gives -5 to 8, 20 (fixed) and 8 to 23 (95 %). Whole
-// numbers, so that a sum over threads is the same in any order.
+// both these weights and the fitted ones predict to 6 %, and the fit gives -5 to 8, 20 (fixed) and 8 to 23 (95 %). The weights
+// are whole numbers, so that a sum over threads is the same in any order.
 struct CostModel {
   uint64_t camera_ray = 4;
   uint64_t ray = 20;
@@ -42,10 +42,10 @@ struct PilotModel {
   uint32_t most_rounds = 16;
   // The largest number of lights or paths in the search.
   uint32_t most_splits = 8;
-  // Required gain: samples that cost more without a gain only delay the first pictures.
+  // Required gain: a split that gains less only delays the first pictures.
   double gain = 0.95;
-  // Share of the pixels, those with the most noise, whose noise is clamped to the least among them: bright flashes are too rare
-  // in so few samples to estimate their variance.
+  // Share of the pixels, the noisiest ones, whose noise is clamped to the smallest value among them: so few samples contain too
+  // few bright flashes to estimate their variance.
   double clamped = 0.005;
 };
 

@@ -73,7 +73,7 @@ void add_light(Description &description, const lancer_light &source) {
     light.to_world = Affine{};
   } else {
     LightReader reader(object, description.messages);
-    // A negative emission takes light away.
+    // A negative emission subtracts light.
     light.emission = reader.read("emission", source.emission, -kBrightest);
     light.radius = reader.read("radius", source.radius, 0.0f, kBrightest);
     if (light.kind == LightKind::Point || light.kind == LightKind::Spot)

@@ -171,7 +171,7 @@ void PathIntegrator::look_around(uint32_t lane) {
   if (block_.sampled >> lane & 1 && lift == glm::dvec3(0.0)) {
     film_.keep_occlusion(path, occlusion);
   } else {
-    // A next ray without weight is not traced, and one near the terminator starts elsewhere: they need an occlusion ray.
+    // A next ray without weight is not traced, and a next ray near the terminator starts elsewhere. Both need an occlusion ray.
     film_.add_open(path, -glm::vec3(occlusion));
     send_occlusion_ray(lane, get(block_.wi, lane), glm::vec3(occlusion));
   }
@@ -182,7 +182,7 @@ void PathIntegrator::send_occlusion_ray(uint32_t lane, const glm::vec3 &wi, cons
   LightSample around;
   around.wi = glm::dvec3(wi);
   around.distance = std::numeric_limits<double>::infinity();
-  // As the rays to lights it starts on the curved surface of a smooth mesh.
+  // Like a shadow ray, the occlusion ray starts on the curved surface of a smooth mesh.
   Ray ray =
       shadow_ray(scene_.geometry, surfaces_.surface(lane), get(block_.viewer_ns, lane), get(block_.viewer_ng, lane), around);
   ray.tmax = occlusion_reach_;
