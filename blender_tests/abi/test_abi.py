@@ -23,6 +23,7 @@ def test_index_out_of_range_names_mesh_and_index(raw):
     result = add(raw, scene, "mesh", mesh)
     assert result == (Status.ERROR_ARGUMENT, "mesh 'Cube': index 812 >= 800 vertices")
     refused(add(raw, scene, "mesh", raw.mesh(triangles=[(0, 1, 2**32 - 1)])), "mesh 'Cube'", "4294967295", "4 vertices")
+    refused(add(raw, scene, "mesh", raw.mesh(triangles=[(0, 1, 4)])), "mesh 'Cube'", "index 4", "4 vertices")
     # Nothing was added: the next mesh is number 0, and number 1 does not exist.
     assert add(raw, scene, "mesh", raw.mesh())[0] == Status.OK
     assert add(raw, scene, "material", raw.material())[0] == Status.OK
@@ -35,6 +36,7 @@ def test_wrong_numbers_in_instances(raw):
     refused(raw.add_instances(scene, [raw.instance(kind=5)]), "Thing", "kind", "5")
     refused(raw.add_instances(scene, [raw.instance(shading=9)]), "Thing", "shading", "9")
     refused(raw.add_instances(scene, [raw.instance(mesh=7)]), "Thing", "7")
+    refused(raw.add_instances(scene, [raw.instance(mesh=1)]), "Thing", "mesh 1", "1 meshes")
     refused(raw.add_instances(scene, [raw.instance()], slots=(44,)), "material 44", "1 materials")
     refused(raw.add_instances(scene, [raw.instance(first_slot=5)]), "Thing", "5")
     refused(raw.add_instances(scene, [raw.instance(first_slot=2**32 - 1, slot_count=2)]), "Thing", "slot")
@@ -269,6 +271,15 @@ def test_wild_values_of_a_light_are_refused_or_replaced_with_a_message(raw, fiel
         assert legal or "Lamp" in raw.messages(scene)
     else:
         refused(result, "light 'Lamp'")
+
+
+def test_an_undefined_number_of_a_light_is_its_least(raw):
+    scene = raw.scene()
+    for field in ("radius", "spot_blend"):
+        assert add(raw, scene, "light", raw.light(kind=abi.LightKind.SPOT, **{field: NAN}))[0] == Status.OK
+    assert raw.commit(scene)[0] == Status.OK
+    lines = raw.messages(scene).splitlines()
+    assert [line.endswith("nan was replaced by 0") for line in lines] == [True, True], lines
 
 
 def test_wild_worlds(raw):

@@ -50,6 +50,11 @@ def test_wrong_cameras(raw, field):
     refused(raw.create_session(raw.committed(), camera=camera), "camera")
 
 
+@pytest.mark.parametrize("window", [(0.5, 0.5, -0.5, 0.5), (-0.5, 0.5, 0.5, 0.5)])
+def test_a_window_has_a_width_and_a_height(raw, window):
+    refused(raw.create_session(raw.committed(), camera=raw.camera(window=window)), "camera", "window")
+
+
 @pytest.mark.parametrize("ratio", [0.0, -1.0, NAN, INF])
 def test_the_aperture_must_have_a_ratio_where_a_lens_is(raw, ratio):
     camera = raw.camera(lens_radius=0.1, focal_distance=1.0, aperture_ratio=ratio)
@@ -71,6 +76,11 @@ def test_wrong_choices_in_settings(raw, field, value):
 @pytest.mark.parametrize("field", ["max_bounces", "transparent_bounces", "transparent_shadows"])
 def test_too_many_bounces(raw, field):
     refused(raw.create_session(raw.committed(), settings=raw.settings(**{field: 1025})), field, "1025", "1024")
+
+
+def test_the_deepest_recursion_of_classic(raw):
+    settings = raw.settings(integrator=1, max_bounces=17)
+    refused(raw.create_session(raw.committed(), settings=settings), "max_bounces 17", "CLASSIC")
 
 
 AMOUNTS = ("filter_width", "contribution_threshold", "clamp_indirect", "glass_roughness", "alpha_threshold")

@@ -11,7 +11,7 @@ from course import EXACT, EYE, LAMP, classic, color, lamp, mirrored_sky, specula
 from tiny_scenes import lambert, move, pencil, plane, rgb, rotate_x, scale, sphere
 
 from addon.bindings.abi import Falloff, Integrator, LightKind, LobeKind, Shading
-from addon.bindings.enums import Coordinate, Environment, NodeKind, Ray
+from addon.bindings.enums import Coordinate, Environment, NodeKind, Ray, VectorOperation
 from addon.bindings.session import Session
 from addon.bindings.snapshot import Image, Instance, Light, Lobe, Material, MeshData, Node, NodeRef, World
 
@@ -89,6 +89,17 @@ def test_ambient():
     got = color([plane(), wall], [material], [lamp(ambient_color=(1.0, 0.5, 0.0))])
     want = np.array([0.5, 0.25, 1.0]) * [1.0, 0.5, 0.0] * np.array([9, 18, 27]) / 9 / math.pi
     assert np.allclose(got, want, rtol=EXACT)
+
+
+def test_the_ambient_light_of_a_sky_that_varies_is_its_mean_along_the_axes():
+    """A sky of 1 + x, 1 + y, 1 + z in the direction (x, y, z) has the mean 1."""
+    nodes = (
+        Node(kind=NodeKind.COORDINATE, option=Coordinate.GENERATED),
+        Node(kind=NodeKind.VECTOR_MATH, option=VectorOperation.ADD, inputs=(NodeRef(0), (1.0, 1.0, 1.0), (0.0,) * 3, 1.0)),
+    )
+    material = Material("ambient", lobes=(), ambient=(0.5, 0.25, 1.0))
+    snapshot = dataclasses.replace(classic([plane()], [material]), world=World(radiance=NodeRef(1), nodes=nodes))
+    assert np.allclose(tiny_scenes.render(snapshot)[0, 0, :3], (0.5, 0.25, 1.0), rtol=EXACT)
 
 
 @pytest.mark.parametrize("lamps", [0, 1, 5])

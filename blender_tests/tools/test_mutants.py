@@ -11,7 +11,7 @@ from tools.mutants.faults import Fault, read_faults
 
 FAULTS = read_faults()
 FOLDERS = {"core": ROOT / "core" / "src", "addon": ROOT / "addon"}
-_GTEST = re.compile(r"^TEST(?:_F|_P)?\((\w+), (\w+)\)", re.MULTILINE)
+_GTEST = re.compile(r"^(?:TYPED_)?TEST(?:_F|_P)?\((\w+), (\w+)\)", re.MULTILINE)
 
 
 def texts(folder, pattern):

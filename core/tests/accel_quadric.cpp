@@ -205,5 +205,19 @@ TEST(Quadric, PointsLieOnTheSurface) {
   }
 }
 
+// u turns counter-clockwise from x; v rises from -z to +z, by the latitude on a sphere.
+TEST(Quadric, TextureCoordinatesRiseWithZ) {
+  const double r = std::sqrt(0.5);
+  for (const ShapeKind kind : {ShapeKind::Sphere, ShapeKind::Cylinder, ShapeKind::Cone}) {
+    EXPECT_NEAR(quadric_uv(kind, {0.0, 0.5, 0.0}).x, 0.25, 1e-15);
+    EXPECT_NEAR(quadric_uv(kind, {0.0, -0.5, 0.0}).x, 0.75, 1e-15);
+    EXPECT_NEAR(quadric_uv(kind, {1.0, 0.0, 0.0}).y, 0.5, 1e-15);
+    EXPECT_NEAR(quadric_uv(kind, {0.0, 0.0, 1.0}).y, 1.0, 1e-15);
+    EXPECT_NEAR(quadric_uv(kind, {0.0, 0.0, -1.0}).y, 0.0, 1e-15);
+  }
+  EXPECT_NEAR(quadric_uv(ShapeKind::Sphere, {r, 0.0, r}).y, 0.75, 1e-15);
+  EXPECT_EQ(quadric_uv(ShapeKind::Plane, {3.0, -2.0, 0.0}), glm::dvec2(3.0, -2.0));
+}
+
 } // namespace
 } // namespace lancer::test

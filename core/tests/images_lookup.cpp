@@ -177,6 +177,14 @@ TEST(ImagesLookup, AlphaModes) {
   for (const uint32_t mode : {LANCER_ALPHA_STRAIGHT, LANCER_ALPHA_ASSOCIATED, LANCER_ALPHA_CHANNEL_PACKED})
     EXPECT_EQ(look(mode, LANCER_TRANSFER_LINEAR, false).w, 128.0f / 255.0f);
   EXPECT_EQ(look(LANCER_ALPHA_NONE, LANCER_TRANSFER_LINEAR, false).w, 1.0f);
+  // Floats and 16 bits are multiplied as bytes are.
+  const auto one = [&](const Image &image) {
+    return lookup(image, glm::vec2(0.5f), Extension::Repeat, Interpolation::Linear, false);
+  };
+  const Image floats = picture<float>(1, 1, 4, {0.5f, 0.25f, 2.0f, 0.5f}, LANCER_TRANSFER_LINEAR, LANCER_ALPHA_STRAIGHT);
+  EXPECT_EQ(one(floats), glm::vec4(0.25f, 0.125f, 1.0f, 0.5f));
+  const Image words = picture<uint16_t>(1, 1, 4, {40000, 20000, 10000, 32768}, LANCER_TRANSFER_LINEAR, LANCER_ALPHA_STRAIGHT);
+  expect_near(glm::vec3(one(words)), glm::vec3(20000, 10000, 5000) / 65535.0f);
   // The curve is applied after alpha, and does not change alpha.
   const glm::vec4 encoded = look(LANCER_ALPHA_STRAIGHT, LANCER_TRANSFER_SRGB, true);
   EXPECT_NEAR(encoded.x, srgb(100.0 / 128.0), kCurve);

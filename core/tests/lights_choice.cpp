@@ -1,6 +1,8 @@
 // Several lights at once: two techniques share each of them, whichever light a sample chooses.
 #include "picture_lab.h"
 
+#include "lights/light_set.h"
+
 #include <gtest/gtest.h>
 #include <numbers>
 
@@ -26,3 +28,32 @@ TEST(LightsChoice, AddUpUnderASky) {
 
 } // namespace
 } // namespace lancer_test
+
+namespace lancer {
+namespace {
+
+// Ten lamps, which have a tree of their own, beside a sun.
+TEST(LightsChoice, KnowsItsOwnProbability) {
+  std::vector<Light> lights(11);
+  for (int i = 0; i < 10; ++i) {
+    lights[size_t(i)].kind = LightKind::Point;
+    lights[size_t(i)].emission = glm::dvec3(1.0 + i);
+    lights[size_t(i)].position = {double(i), 0.5 * i, 3.0};
+  }
+  lights[10].kind = LightKind::Sun;
+  lights[10].emission = glm::dvec3(0.5);
+  const LightSet set(std::move(lights), {}, 0, Environment(), BuildContext{});
+  const LightQuery query(glm::dvec3(2.0, 1.0, 0.0), glm::vec3(0.0f, 0.0f, 1.0f), false);
+  bool lamp = false, sun = false;
+  for (int i = 0; i < 64; ++i) {
+    const LightSet::Choice choice = set.choose(Geometry{}, query, (i + 0.5) / 64.0);
+    ASSERT_GT(choice.probability, 0.0);
+    // The two ways multiply floats in another order.
+    EXPECT_NEAR(choice.probability, set.probability(query, choice.light), 1e-5 * choice.probability);
+    (choice.light == 10 ? sun : lamp) = true;
+  }
+  EXPECT_TRUE(lamp && sun);
+}
+
+} // namespace
+} // namespace lancer

@@ -136,7 +136,7 @@ def spaces():
 
 
 def files():
-    """Tiles of either way of numbering, one of them missing; a frame of a sequence; sixteen bits; no file; no image at all."""
+    """Tiles under both naming schemes, one missing; a frame of a sequence; 16 bits; a missing file; no image at all."""
     scene = stage.empty()
     folder = tempfile.mkdtemp()
     for number, shift in ((1001, 0), (1002, 50), (1011, 100)):

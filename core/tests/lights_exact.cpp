@@ -1,0 +1,94 @@
+// Exact surfaces that emit: samples cover each part by its area, with the density that belongs to the whole area.
+#include "lights/emitter.h"
+#include "scene/geometry.h"
+#include "scene/material.h"
+
+#include <glm/gtc/constants.hpp>
+#include <gtest/gtest.h>
+
+namespace lancer {
+namespace {
+
+struct Shares {
+  double side = 0.0, low = 0.0, high = 0.0; // of the samples: the curved side, the disks at z = -1 and z = 1
+};
+
+// Samples a unit shape over a grid of numbers, and expects the density of a uniform point of this area at each sample.
+Shares shares_of(ShapeKind kind, double area) {
+  constexpr int kSide = 96;
+  Geometry geometry;
+  Instance &instance = geometry.instances.emplace_back();
+  instance.kind = kind;
+  instance.slot_count = 1;
+  instance.place(Affine{});
+  std::vector<Material> materials(1);
+  materials[0].emission.value = glm::vec3(1.0f);
+  const std::vector<uint32_t> slots{0};
+  const Emitter emitter(geometry, slots, materials, 0, [](const Surface &, const glm::vec3 &) { return glm::vec3(1.0f); });
+  const glm::dvec3 p(3.0, 4.0, 5.0);
+  Shares shares;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const glm::vec2 u((float(i % kSide) + 0.5f) / kSide, (float(i / kSide) + 0.5f) / kSide);
+    Surface surface;
+    const LightSample sample = emitter.sample(geometry, slots, p, u, surface);
+    const double cosine = std::abs(glm::dot(glm::dvec3(surface.ng), sample.wi));
+    // Normals are floats: their rounding is a share of 6e-8 / cosine of it.
+    EXPECT_NEAR(sample.pdf * area * cosine, sample.distance * sample.distance,
+                1e-6 * sample.distance * sample.distance / cosine);
+    double &share = std::abs(surface.ng.z) < 1.0f ? shares.side : surface.p.z < 0.0 ? shares.low : shares.high;
+    share += 1.0 / (kSide * kSide);
+  }
+  return shares;
+}
+
+// A part begins and ends within a row of the grid: two rows of 96.
+constexpr double kRows = 2.0 / 96.0;
+
+TEST(LightsExact, CylindersAreCoveredByTheirAreas) {
+  const Shares shares = shares_of(ShapeKind::Cylinder, 6.0 * glm::pi<double>());
+  EXPECT_NEAR(shares.side, 2.0 / 3.0, kRows);
+  EXPECT_NEAR(shares.low, 1.0 / 6.0, kRows);
+  EXPECT_NEAR(shares.high, 1.0 / 6.0, kRows);
+}
+
+TEST(LightsExact, ConesAreCoveredByTheirAreas) {
+  const double root = std::sqrt(5.0);
+  const Shares shares = shares_of(ShapeKind::Cone, (root + 1.0) * glm::pi<double>());
+  EXPECT_NEAR(shares.side, root / (root + 1.0), kRows);
+  EXPECT_NEAR(shares.low, 1.0 / (root + 1.0), kRows);
+  EXPECT_EQ(shares.high, 0.0);
+}
+
+TEST(LightsExact, SpheresAreOneSide) { EXPECT_NEAR(shares_of(ShapeKind::Sphere, 4.0 * glm::pi<double>()).side, 1.0, 1e-9); }
+
+TEST(LightsExact, SomeMaterialsAreNoLights) {
+  Material material;
+  material.emission.value = glm::vec3(1.0f);
+  EXPECT_TRUE(is_light(material));
+  material.flags = LANCER_MATERIAL_NOT_A_LIGHT;
+  EXPECT_FALSE(is_light(material));
+}
+
+// A face that is bright in its middle alone has the power of its mean over four places.
+TEST(LightsExact, PowersOfFacesAreMeansOverThem) {
+  Geometry geometry;
+  Mesh &mesh = geometry.meshes.emplace_back();
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
+  mesh.triangles = {{0, 1, 2}, {3, 2, 1}};
+  Instance &instance = geometry.instances.emplace_back();
+  instance.slot_count = 1;
+  instance.place(Affine{});
+  std::vector<Material> materials(1);
+  materials[0].program.nodes.resize(1);
+  materials[0].emission.node = 0;
+  materials[0].emission_nodes = {0};
+  const auto emission = [](const Surface &surface, const glm::vec3 &) {
+    const bool middle = std::abs(surface.bary.x - 1.0 / 3.0) + std::abs(surface.bary.y - 1.0 / 3.0) < 0.01;
+    return glm::vec3(surface.primitive == 1 ? 1.0f : middle ? 4.0f : 0.0f);
+  };
+  const EmissiveFaces faces(geometry, {0}, materials, 0, false, emission, BuildContext{});
+  EXPECT_NEAR(faces.by_power().pmf(0), 0.5f, 1e-6f);
+}
+
+} // namespace
+} // namespace lancer
