@@ -108,6 +108,16 @@ def pass_ambient_occlusion_coarse(scene):
     camera(scene, (0, -4.2, 2.2), (0, 0, 0.85))
 
 
+@case("LOBES", passes=("Ambient Occlusion",), bounces=1, quick=True)
+def pass_ambient_occlusion_of_panes(scene):
+    """Half transparent, under a sky that is worth several paths of a sample."""
+    half = shader("ShaderNodeBsdfPrincipled", Base_Color=(0.8, 0.8, 0.8), Alpha=0.45)
+    parts.place(scene, "Pane", parts.plane_mesh("Pane", 2.0), half, (0, 0, 0.8), rotation=(0.6, 0.3, 0))
+    parts.place(scene, "Floor", parts.plane_mesh("Floor", 12.0), half)
+    sky(scene, (1, 1, 1), 1.0)
+    camera(scene, (0, -4.2, 2.2), (0, 0, 0.85))
+
+
 def _smooth_cube():
     mesh = parts.cube_mesh("Cube", 1.3)
     for face in mesh.polygons:

@@ -149,7 +149,10 @@ void PathIntegrator::go_on() {
     lanes_.scatter(block_);
     for (uint32_t rest = going; rest != 0; rest &= rest - 1) {
       const uint32_t lane = uint32_t(std::countr_zero(rest));
-      if (block_.occlusion_asked >> lane & 1 && number == waiting_[lane].leader)
+      // A path that passes straight on has no further branches: its first one looks around in the leader's place.
+      const bool looks =
+          number == waiting_[lane].leader || (number == 0 && paths_[waiting_[lane].number].chooses_to_pass(block_.pass[lane]));
+      if (block_.occlusion_asked >> lane & 1 && looks)
         look_around(lane);
       if (number == 0 && passes_straight(lane))
         going &= ~(1u << lane);
