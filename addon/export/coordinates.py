@@ -1,5 +1,6 @@
 """Nodes about the point where a ray meets a surface: coordinates, attributes, geometry."""
 
+import bpy
 import numpy as np
 from mathutils import Euler
 
@@ -14,6 +15,8 @@ _RADIAL = {"X": 0, "Y": 1, "Z": 2}
 _ALONG_U = 3
 # Names of attributes that Cycles computes itself.
 _UNREAD = {"N", "generated_transform", "pointiness", "random_per_island", "tangent", "tangent_sign"}
+if bpy.app.version < (4, 5):
+    _UNREAD |= {"Ng", "undisplaced"}
 _TANGENTS = (".tangent", ".tangent_sign")
 
 _TEXTURE_COORDINATES = {

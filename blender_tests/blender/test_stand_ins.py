@@ -31,6 +31,16 @@ def test_a_value_stands_in_by_its_constant_and_a_colour_by_grey(which, tmp_path)
 
 
 @pytest.mark.parametrize("which", [MODULE, PROGRAM])
+def test_attributes_that_cycles_computes_are_told(which, tmp_path):
+    """Cycles before 4.5 has a name for the normals of faces."""
+    got = blenders.run(which, tmp_path, "stand_in_cases", "computed_attributes")
+    got.pop("console")
+    told = {name for name, messages in got.items() if any("(Attribute), which is not supported" in text for text in messages)}
+    assert told == {"N", "pointiness", "Map.tangent"} | ({"Ng"} if which == PROGRAM else set())
+    assert all(not messages for name, messages in got.items() if name not in told)
+
+
+@pytest.mark.parametrize("which", [MODULE, PROGRAM])
 def test_light_between_facets_is_told_where_it_is_computed_differently(which, tmp_path):
     got = blenders.run(which, tmp_path, "stand_in_cases", "facets")
     got.pop("console")

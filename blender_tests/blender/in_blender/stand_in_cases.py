@@ -37,6 +37,19 @@ def unknown_sources():
     return {"lobes": got["lobes"], "messages": got["messages"]}
 
 
+def computed_attributes():
+    """Return {name: messages} of emission by an Attribute node of that name."""
+    result = {}
+    for name in ("N", "Ng", "pointiness", "Map.tangent", "GREEN", "uv", "position", "missing"):
+        tree = Tree(name)
+        color = tree.node("Attribute", attribute_name=name)
+        node = tree.node("Emission")
+        tree.tree.links.new(color.outputs["Color"], node.inputs["Color"])
+        tree.show(node.outputs[0])
+        result[name] = answer(tree.material)[name]["messages"]
+    return result
+
+
 def samplers():
     """Return {name: messages} of surfaces on either side of the limits beyond which Cycles samples the sky with bias."""
     old = bpy.app.version < (4, 0)
