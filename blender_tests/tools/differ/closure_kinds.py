@@ -81,3 +81,6 @@ EXACT = {
     "ShaderNodeBsdfDiffuse", "ShaderNodeBsdfTranslucent", "ShaderNodeBsdfTransparent", "ShaderNodeEmission",
     "ShaderNodeHoldout", "ShaderNodeMixShader", "ShaderNodeAddShader",
 }  # fmt: skip
+# Closures that pass on to others, and those that show what is behind.
+MIXED = {"ShaderNodeMixShader", "ShaderNodeAddShader"}
+CLEAR = MIXED | {"ShaderNodeBsdfTransparent", "ShaderNodeHoldout"}

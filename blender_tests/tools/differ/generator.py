@@ -19,6 +19,7 @@ def describe(seed):
     lamps = [record for number in range(dice.pick({0: 3, 1: 5, 2: 2})) for record in random_lights.lamp(dice, number + 1)]
     frame, views = random_frames.frame(dice)
     trees = Trees(dice, [record.name for record in images], things.names)
+    trees.is_opaque = frame.get("kind") == "DATA"
     for record in materials:
         trees.material(record.name)
     world, sky = _world(dice, bool(lamps)), None

@@ -20,6 +20,8 @@ class Trees:
         self._count = 0
         self._groups, self._group_count = [], 0
         self.budget = 0  # nodes that this tree may still have
+        # Of what is half seen through, Cycles' data are those of a path that it chose by chance.
+        self.is_opaque = False
 
     def material(self, tree):
         """The tree of a material: surface, and now and then displacement."""
@@ -80,10 +82,10 @@ class Trees:
 
     def _shader(self, tree, depth):
         kinds = {name: kind.weight for name, kind in closure_kinds.SHADERS.items()}
-        if depth > 2 or self.budget <= 2:
-            kinds = {
-                name: weight for name, weight in kinds.items() if name not in ("ShaderNodeMixShader", "ShaderNodeAddShader")
-            }
+        left_out = closure_kinds.MIXED if depth > 2 or self.budget <= 2 else set()
+        if self.is_opaque:
+            left_out = left_out | closure_kinds.CLEAR
+        kinds = {name: weight for name, weight in kinds.items() if name not in left_out}
         return self._passed_on(tree, self._node(tree, self.dice.pick(kinds), "s", depth, closure_kinds.SHADERS))
 
     def _value(self, tree, wanted, depth):
@@ -115,7 +117,7 @@ class Trees:
             self._special(special, props, more)
         inputs = {}
         for key, (type_, low, high) in kind.inputs.items():
-            value = self._input(tree, kind, key, type_, low, high, depth)
+            value = None if self.is_opaque and key == "Alpha" else self._input(tree, kind, key, type_, low, high, depth)
             if value is not None:
                 inputs[key] = value
         return [self._write(tree, name, props, inputs, mute=wanted != "s" and dice.chance(0.04), **more), output]
