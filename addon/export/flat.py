@@ -28,8 +28,20 @@ def report_flat(table, meshes, messages):
         who = f"object '{table.names[name]}': is flat by a scale of 0"
         if users[mesh] > 1:
             messages.add(f"{who} and shares its mesh, Cycles leaves it out", "feature:flat object")
+        elif _has_two_sides(meshes[mesh], cofactors[first]):
+            messages.add(f"{who} and closed, Cycles has its two sides shadow each other", "feature:flat object")
         elif turned[first] and meshes[mesh].normals is not None:
             messages.add(f"{who} and smooth, Cycles turns its normals away from the light", "feature:flat object")
+
+
+def _has_two_sides(mesh, cofactors):
+    """Whether faces of the flattened mesh look both ways."""
+    corners = mesh.positions[mesh.triangles].astype(float)
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    # The rows of the cofactors are parallel to the direction that is lost.
+    sides = normals @ cofactors[np.abs(cofactors).max(axis=1).argmax()]
+    limit = _TURNED * np.abs(sides).max(initial=0.0)
+    return bool((sides > limit).any() and (sides < -limit).any())
 
 
 def _is_singular(linear):

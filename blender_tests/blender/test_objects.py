@@ -34,8 +34,9 @@ def test_switches(case):
 
 
 def test_flat_objects_that_cycles_shows_otherwise(case):
-    """Cycles hides those with a shared mesh, and mirrors the normals of smooth ones to the wrong side."""
+    """Cycles hides shared meshes, turns smooth normals to the wrong side, and shadows coplanar faces by each other."""
     assert sorted(case("flat")) == [
+        "object 'closed': is flat by a scale of 0 and closed, Cycles has its two sides shadow each other",
         "object 'shared': is flat by a scale of 0 and shares its mesh, Cycles leaves it out",
         "object 'turned': is flat by a scale of 0 and smooth, Cycles turns its normals away from the light",
     ]

@@ -53,10 +53,14 @@ def switches():
 def flat():
     """Messages for objects that a scale of 0 flattens, by name."""
     stage.empty()
-    _named("plain", scale=(1, 1, 0))
-    _named("smooth", scale=(1, 1, 0)).data.polygons.foreach_set("use_smooth", [True] * 6)
-    # The sum of the cofactors' diagonal is below 0.
-    _named("turned", scale=(-1, 1, 0)).data.polygons.foreach_set("use_smooth", [True] * 6)
+    sheet = [(0, 0, 0), (1, 0, 0.2), (0, 1, 0), (1, 1, 0.5)], [(0, 1, 3, 2)]
+    stage.mesh("plain", *sheet).scale = (1, 1, 0)
+    # The sum of the cofactors' diagonal is below 0 where one axis is mirrored.
+    for name, x in (("smooth", 1), ("turned", -1)):
+        item = stage.mesh(name, *sheet)
+        item.scale = (x, 1, 0)
+        item.data.polygons.foreach_set("use_smooth", [True])
+    _named("closed", scale=(1, 1, 0))
     first = _named("shared", scale=(1, 0, 1))
     stage.link("other", first.data)
     _named("line", scale=(1, 0, 0))
