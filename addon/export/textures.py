@@ -1,6 +1,10 @@
 """Image nodes: the image, its coordinates, interpolation and extension."""
 
+import numpy as np
+
+from ..bindings import snapshot
 from ..bindings.enums import (
+    AlphaMode,
     Coordinate,
     Environment,
     Extension,
@@ -24,6 +28,7 @@ _INTERPOLATION = {
 _STRAIGHT_COLOR = 256
 _AXES = {"NONE": None, "X": 0, "Y": 1, "Z": 2}
 _MAGENTA = (1.0, 0.0, 1.0)
+_MISSING = snapshot.Image("missing", np.array(((_MAGENTA,),), np.float32), alpha=AlphaMode.STRAIGHT)
 
 
 def _image_texture(graph, site, output):
@@ -31,7 +36,10 @@ def _image_texture(graph, site, output):
     is_alpha = output.identifier == "Alpha"
     found = _picture(graph, site)
     if found is None:
-        return 1.0 if is_alpha else _MAGENTA
+        if node.extension != "CLIP" or graph.images is None:
+            return 1.0 if is_alpha else _MAGENTA
+        # Cycles clips the one texel that stands for a picture, too.
+        found = graph.images.repeat([_MISSING]), 1
     first, count = found
     vector = graph.linked(site, ("Vector",), None)
     if vector is None:
@@ -78,7 +86,7 @@ def _picture(graph, site):
 
 
 def _has_color_under_alpha(image):
-    return not image.colorspace_settings.is_data and image.alpha_mode not in ("CHANNEL_PACKED", "NONE")
+    return image is not None and not image.colorspace_settings.is_data and image.alpha_mode not in ("CHANNEL_PACKED", "NONE")
 
 
 def legacy_mapping(graph, site, vector):

@@ -58,6 +58,12 @@ def image_round(scene, projection):
     camera(scene, (0, -3.6, 2.6), (0, 0, 1))
 
 
+@variants(values={"color": "Color", "alpha": ("Alpha", {"quick": True})}, bounces=0)
+def image_missing_clipped(scene, output):
+    """Magenta where the map is within its borders, and nothing beyond them."""
+    card(scene, material(lambda nodes: _matt(nodes, _picture(nodes, None, _stretched(nodes, 2.0), output, extension="CLIP"))))
+
+
 @variants(values={"repeat": "REPEAT", "extend": "EXTEND", "clip": "CLIP", "mirror": ("MIRROR", {"since": (3, 5)})})
 def image_extension(scene, extension):
     def build(nodes):
