@@ -47,7 +47,7 @@ def test_two_planes_at_one_height(thorough):
     assert finding.kind == "coincident" and finding.severity == Severity.WRONG
     assert {finding.object, *finding.what.split("'")} >= {"one", "two"}
     assert abs(finding.place[2]) < 1e-6 and max(map(abs, finding.place)) <= 2.0
-    # Whatever their direction.
+    # The direction of the faces does not matter.
     for matrix in (rotate_x(np.pi), move(1, 1, 0)):
         assert found(two(matrix=matrix), thorough) == COINCIDENT
     # A distance of one step of single precision counts as 0, many steps do not.
@@ -88,7 +88,7 @@ def test_planes_that_look_alike(thorough):
     assert found(one(MeshData("both", *both), GREY_), thorough) == DARKER
     lifted = small.positions + np.float32((0.0, 0.0, 1e-4))
     assert found(one(MeshData("both", np.concatenate((large.positions, lifted)), both[1]), GREY_), thorough) == []
-    # Of two such places in one mesh the visible one is reported.
+    # If one mesh has two such places, the check reports the visible one.
     for height in (-1.0, 1.0):
         far = both[0] + np.float32((0.0, 900.0, height))
         pairs = MeshData("pairs", np.concatenate((both[0], far)), np.concatenate((both[1], both[1] + 8)))

@@ -64,7 +64,7 @@ def test_settings_are_taken_over_and_the_button_goes(found):
     for name, value in wanted.items():
         # Single precision keeps seven digits.
         assert got["taken"][name] == (pytest.approx(value, rel=1e-6) if isinstance(value, float) else value), name
-    # What Lancer reads by itself has no copy.
+    # Settings that Lancer reads by itself have no copy.
     assert not got["glass"]
     assert got["left"] == got["again"] == {} and not got["poll"] and got["offered after"] == []
     button, sentence = got["offered"][0], " ".join(got["offered"][1:])

@@ -86,9 +86,9 @@ def test_the_interval_holds_the_truth(count):
 def test_the_interval_is_as_narrow_as_order_allows():
     """Of nine values the second and the eighth: the median is outside with probability 2 * 10 / 512 = 3.9 %."""
     assert median_with_uncertainty([1, 2, 3, 4, 5, 6, 7, 8, 100]) == (5, 3)
-    # Of eight the first and the last: with the second the probability is 2 * 9 / 256 = 7 %.
+    # The interval is that of the first and the last of eight: the second would leave a probability of 2 * 9 / 256 = 7 %.
     assert median_with_uncertainty([1, 2, 3, 4, 5, 6, 7, 8]) == (4.5, 3.5)
-    # Of six the least and the greatest, 2 / 64; of five even these leave 6 %.
+    # The interval is that of the least and the greatest of six, 2 / 64; five would leave 6 %.
     assert median_with_uncertainty([1.0, 2.0, 3.0, 4.0, 5.0, 7.0]) == (3.5, 3.5)
     assert median_with_uncertainty([3.0, 1.0, 2.0]) == (2.0, float("inf"))
 

@@ -70,7 +70,7 @@ def test_settings(case):
     assert got["first"] == [False, False, pytest.approx(0.01), 8, 0.5, 0.0, 0.0, 100.0, 1.0]
     # A roughness of 0.5 is an alpha of 0.25.
     assert got["second"] == [True, True, 0.25, 3, 0.25, 4.0, 2.0, 30.0, 0.5]
-    # Of 0 and 3 surfaces that paths pass through: before Blender 5 it is one more.
+    # Paths pass through 0 and 3 surfaces; Blender before 5 counts one more.
     assert got["bounces"] == ([1, 4] if got["version"] < [5, 0] else [1, 3])
 
 

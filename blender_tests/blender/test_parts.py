@@ -30,7 +30,7 @@ EXPECTED = {
     "hidden object": (6, 0, 0, 0),
     "shown object": (7, 1, 1, 1),
     "painted picture": SHADER_AND_PICTURE,
-    # Both images are already read.
+    # The export has read both images before.
     "other picture": SHADER,
     # The modifier is added to one of two objects that share a mesh.
     "modifier": (7, 2, 0, 0),

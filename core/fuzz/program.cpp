@@ -38,7 +38,7 @@ public:
   }
 
 private:
-  // Mostly the newest handle; also an older one, a freed one, or one that never existed.
+  // Returns the newest handle most often, or an older one, a freed one, or one that never existed.
   template <class State> lancer_scene handle_of(const std::vector<State> &states) {
     const uint8_t b = bytes_.byte();
     if (b >= 253 || states.empty())

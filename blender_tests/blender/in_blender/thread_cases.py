@@ -56,7 +56,7 @@ def asked():
         if len(looks) > 3:
             raise Cancelled
 
-    # Nobody serves: the user's Esc ends the wait, and the requested work is never done.
+    # Without a main loop only the user's Esc ends the wait, and the requested work is never done.
     asker = _Asker(lambda: done.append("cancelled"), obey)
     asker.join()
     main_thread.serve()

@@ -17,7 +17,7 @@ def relative_variance(ours, theirs):
     ours, theirs: (seeds, h, w, channels) each, all with the same number of samples.
     """
     maps = [luminance(pictures) for pictures in (ours, theirs)]
-    # Both are relative to the same level. Half the squared difference of two pictures estimates the variance of one.
+    # The two errors are relative to the same level. Half the squared difference of two pictures estimates the variance of one.
     scale = level_of(np.abs(0.5 * (maps[0].mean(axis=0) + maps[1].mean(axis=0))))
     scale = np.where(scale > 0.0, scale, 1.0)
     return tuple(values.var(axis=0, ddof=1) / scale**2 for values in maps)

@@ -28,7 +28,7 @@ constexpr LayerRow kLayers[kLayerCount] = {
 template <class F> LANCER_LANE F cos_in(const Bsdf<F> &bsdf, uint8_t frame) { return max(F(0.0f), bsdf.wo_local[frame].z); }
 template <class V> LANCER_LANE V positive(const V &x) { return max(x, V(NumberOf<V>(0.0f))); }
 
-// Both roughnesses, shared by all lobes of the base.
+// The two roughnesses, shared by all lobes of the base.
 template <class F> struct Grain {
   F alpha_x, alpha_y;
   MaskOf<F> stretched; // anisotropic along the rotated tangent

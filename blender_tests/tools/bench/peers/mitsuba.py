@@ -107,7 +107,7 @@ class Renderer:
         return scene
 
     def _integrator(self):
-        # Of Mitsuba's integrators only this one lets shadow rays pass through cut-out surfaces.
+        # This is the only integrator of Mitsuba whose shadow rays pass through cut-out surfaces.
         kind = "volpath" if any(surface.cut_out for surface in self.surfaces) else "path"
         # Hiding lamps hides the world, too.
         hide = read_world(self.snapshot.world) == ((0.0, 0.0, 0.0), None)

@@ -123,7 +123,7 @@ LANCER_LANE void visit_triangles(const TriangleBlock &block, const PacketAsks &a
     for (uint32_t k = 0; k < 3; ++k)
       for (uint32_t i = 0; i < 3; ++i)
         corner[i][k] = repeat<kTogether>(load_widened(block.corner[i][order[k]]));
-    // Of an odd number of lanes, the last one is tested twice.
+    // If the number of lanes is odd, the last lane is tested twice.
     while (rest != 0) {
       uint32_t lanes[kTogether];
       for (int i = 0; i < kTogether; ++i) {
