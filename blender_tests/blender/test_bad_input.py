@@ -91,4 +91,4 @@ def test_the_factory_scene_warns_of_nothing(which, tmp_path):
     assert got["error"] == "" and got["finite"] and got["mean"] > 0.0
     # Cycles' different default light paths are a hint in the panel.
     (line,) = got["messages"]
-    assert "Light Paths" in line and "Warning" not in got["console"], got["console"]
+    assert "Cycles limits light by" in line and "Warning" not in got["console"], got["console"]

@@ -75,7 +75,7 @@ def test_glass_that_ends_in_an_opaque_part():
 def test_flipped_faces_of_glass():
     faces = [BOX_FACES[0][::-1], *BOX_FACES[1:]]
     finding = only(one(box(faces=faces), GLASS_))
-    assert "opposite ways at 3 edges" in finding.what and "Recalculate" in finding.advice
+    assert "opposite directions at 3 edges" in finding.what and "Recalculate" in finding.advice
     assert found(one(box(faces=faces), GREY_)) == []
 
 
