@@ -179,7 +179,7 @@ def test_an_animation_plays(window):
 
 
 def test_changing_the_size_of_a_view_leaks_no_copy_of_the_scene(window):
-    """A leak of the scene's copy at each of twenty changes would be twenty copies of the arrays."""
+    """A leak of the scene's copy at each of ten changes would be ten copies of the arrays."""
     got = window("resized")
     assert got["copy"] > 8.0 and got["growth"] < 3.0 * got["copy"]
 

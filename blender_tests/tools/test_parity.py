@@ -210,17 +210,30 @@ _TOO_NEW = {
 }
 
 
-# The scenes that show the older rules of the program's Blender.
+# The scenes that show the older rules of the program.
 _RULES = (
     "principled_*,glossy_*,glass_*,diffuse_*,mix_*,bump_*,normals_*,image_*,color_attribute_*,object_info_random,point_soft,"
     "temperature_warm,light_spot_*,light_area_*,light_sun_soft,light_true_*,camera_*,film_*,pass_*"
 )
+_SHARES = {
+    "lights": "lights_*",
+    "materials": "materials_*,textures_*",
+    "others": "inputs,objects,cameras,passes_*,worlds,films",
+}
 
 
-@pytest.mark.parametrize("which, names, least", [(MODULE, "*", 80), (PROGRAM, _RULES, 25)])
+@pytest.mark.parametrize("which, names, least", [
+    *(pytest.param(MODULE, names, 15, id=share) for share, names in _SHARES.items()),
+    pytest.param(PROGRAM, _RULES, 25, id="older rules"),
+])  # fmt: skip
 def test_fast_scenes(which, names, least, tmp_path):
     got = blenders.run(which, tmp_path, "parity_cases", "subset", "LANCER", names)
     wrong = [line for line in got["lines"] if not line.startswith(("pass", "absent"))]
     assert not wrong, "\n".join(wrong)
     assert set(got["absent"]) == _TOO_NEW[got["version"]] & set(got["names"])
     assert got["counts"]["pass"] == len(got["lines"]) - len(got["absent"]) >= least
+
+
+def test_the_shares_are_all_fast_scenes(tmp_path):
+    got = blenders.run(MODULE, tmp_path, "parity_cases", "fast_names", *_SHARES.values())
+    assert sorted(got["all"]) == sorted(got["shares"])

@@ -33,6 +33,12 @@ def subset(engine_name, pattern):
     }
 
 
+def fast_names(*patterns):
+    """Return the names of all fast scenes, and those that the patterns select, one pattern after another."""
+    shares = [case.name for pattern in patterns for case in catalogue.select(pattern, quick=True)]
+    return {"all": [case.name for case in catalogue.select("*", quick=True)], "shares": shares}
+
+
 def runner():
     """Return the runner's verdicts on made-up pictures."""
     result = {}

@@ -27,6 +27,8 @@ def handlers():
     return {name: functions for name, functions in found.items() if isinstance(functions, list)}
 
 
+# The environment of Python may lie in the project, too.
+OURS = tuple(os.path.join(ROOT, folder, "") for folder in ("addon", "blender_tests", "scenes"))
 ENVIRONMENT = dict(os.environ)
 PATH = list(sys.path)
 HANDLERS = {name: list(found) for name, found in handlers().items()}
@@ -48,7 +50,7 @@ def redirect(path):
 
 
 def is_ours(module):
-    return (getattr(module, "__file__", None) or "").startswith(ROOT + os.sep) and module.__name__ != "__main__"
+    return (getattr(module, "__file__", None) or "").startswith(OURS) and module.__name__ != "__main__"
 
 
 def reset():
