@@ -139,6 +139,21 @@ TEST(DenoisingGuides, OfTheSky) {
   EXPECT_FLOAT_EQ(depth(studio), 4.0f);
 }
 
+TEST(DenoisingGuides, OfTheSkyBehindATransparentFilm) {
+  for (const uint32_t integrator : {LANCER_PATH, LANCER_CLASSIC})
+    for (const bool with_environment : {false, true}) {
+      Studio studio;
+      look_down(studio);
+      studio.settings.integrator = integrator;
+      studio.settings.film_transparent = 1;
+      studio.settings.passes &= ~(1u << LANCER_PASS_ENVIRONMENT);
+      if (with_environment)
+        studio.settings.passes |= 1u << LANCER_PASS_ENVIRONMENT;
+      studio.render();
+      expect_near(albedo(studio), glm::vec3(0.0f));
+    }
+}
+
 TEST(DenoisingGuides, OfALamp) {
   Studio studio;
   look_down(studio);

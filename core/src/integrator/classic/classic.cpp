@@ -150,10 +150,11 @@ void ClassicIntegrator::keep_vertex(size_t number, const SampleResult &result, s
 }
 
 void ClassicIntegrator::add(const Branch &branch, const glm::vec3 &light, bool environment, SampleResult &result) {
-  // A transparent film leaves the environment behind it to the environment's pass.
-  if (!environment || !settings_.film_transparent || branch.depth > 0)
+  // A transparent film leaves the environment behind it to the environment's pass: picture and guides have none of it.
+  const bool hidden = environment && settings_.film_transparent && branch.depth == 0;
+  if (!hidden)
     result.radiance += light;
-  if (branch.features.open)
+  if (branch.features.open && !hidden)
     result.albedo += branch.features.beta * light;
   if (branch.depth == 0)
     passes_.add_seen(result, light, environment);

@@ -60,13 +60,15 @@ void PathFilm::add(const Path &path, const glm::vec3 &radiance, bool environment
   SampleResult &result = results_[path.slot];
   // Light that was scattered at most once is direct; clamping never changes it.
   const bool indirect = path.scatterings > 1;
-  if (wants_guides(path))
+  // A transparent film leaves the environment behind it to the environment's pass: picture and guides have none of it.
+  const bool hidden = environment && settings_.film_transparent && path.in_view;
+  if (wants_guides(path) && !hidden)
     result.albedo += guides_[path.slot].beta * radiance;
   // Light seen through clear glass is in no pass of indirect light: clamp it separately.
   if (path.in_view) {
     const float top = largest(glm::abs(radiance)), limit = settings_.clamp_indirect / float(path.sharers);
     const glm::vec3 seen = indirect && limit > 0.0f && top > limit ? radiance * (limit / top) : radiance;
-    if (!environment || !settings_.film_transparent) {
+    if (!hidden) {
       energy.clip(double(luminance(radiance - seen)));
       result.radiance += seen;
     }
