@@ -124,8 +124,7 @@ def test_colours_on_the_screen_are_those_of_the_display_transform(window, displa
         (tmp_path / "shot").touch()
 
     window("screen", meanwhile=shoot)
-    # Rounding adds half a step, and so does Blender's dithering, which depends on the pixel's place.
-    assert len(seen) == 3 and max(abs(a - b) for a, b in zip(seen, (187.5, 136.96, 88.9), strict=True)) <= 1.0
+    assert seen in ([187, 137, 89], [188, 137, 89])
 
 
 def test_a_picture_is_drawn_the_right_way_up_with_its_alpha(window):

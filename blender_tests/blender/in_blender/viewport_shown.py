@@ -97,6 +97,7 @@ def screen(folder):
     stage.sky((0.5, 0.25, 0.1))
     stage.camera()
     scene.lancer.preview_samples = 1
+    scene.render.dither_intensity = 0.0
     view = View()
     view.render()
     yield from until(finished)
