@@ -1,15 +1,16 @@
 """`make differ`: equal scenes each time, a shrinker that leaves what a fault needs, fixed seeds, a planted fault."""
 
 import blenders
+import numpy as np
 import pytest
 from blenders import MODULE
 
-from tools.differ import generator, record
+from tools.differ import data_passes, generator, record
 from tools.differ.record import Record
 from tools.differ.shrinker import shrink
 
 # Of these scenes both engines show the same within few samples. Whoever changes the generator looks for others.
-SEEDS = (1, 4, 6, 9, 11, 12, 16, 20, 24, 27, 28, 30, 32, 41, 44, 48, 49, 50, 53, 56)
+SEEDS = (4, 6, 11, 12, 14, 19, 29, 32, 37, 38, 39, 41, 44, 45, 58, 65, 68, 71, 74, 75)
 
 
 def test_scenes_are_the_same_each_time():
@@ -65,6 +66,30 @@ def test_the_smallest_scene_is_found():
         Record("node", "A/1", {"props": {"feature": "F1"}}),
         Record("node", "A/3", {"inputs": {"Color": ["@A/1", "Fac"]}}),
     ]
+
+
+def _data(offset=0.0):
+    """Two halves of a slope that ends at an edge, sampled beside the middle of each pixel; nothing is seen in the last row."""
+    x, y = np.meshgrid(np.arange(40.0) + offset, np.arange(30.0))
+    picture = np.stack([0.02 * x + 0.01 * y, np.where(x < 20.0, 1.0, 3.0), 0.1 * x * y / 30.0], axis=-1)
+    picture[-1] = 0.0
+    return picture, picture.copy()
+
+
+def test_data_may_be_a_sample_off_the_middle():
+    """The pixels of one column lie on the edge, by half a hundredth of a pixel on either side of it."""
+    assert data_passes.differs(_data(), _data()) == ""
+    assert data_passes.differs(_data(0.005), _data(-0.005)) == ""
+
+
+def test_data_that_are_wrong_are_found():
+    right = _data()
+    wrong = {
+        "everything by half a percent": [half * 1.005 for half in right],
+        "twenty pixels": [np.where(np.arange(40)[:, None] == 7, half + 1.0, half) for half in right],
+        "a hole": [np.where((np.arange(40)[:, None] > 7) & (np.arange(40)[:, None] < 12), 0.0, half) for half in right],
+    }
+    assert {name for name, pair in wrong.items() if not data_passes.differs(tuple(pair), right)} == set()
 
 
 @pytest.fixture(scope="module")

@@ -1,13 +1,10 @@
-"""Records of meshes, attributes and images as Blender's data; values come of seeds, so that a scene is short in print."""
-
-import os
+"""Records of meshes and attributes as Blender's data; values come of seeds, so that a scene is short in print."""
 
 import bmesh
 import bpy
 import numpy as np
 
 from scenes import parts
-from scenes.parity import image_files, images, png
 
 
 def _heap(name):
@@ -31,7 +28,37 @@ def _grid(name):
     return parts.mesh_from_points(name, points, faces)
 
 
+def _fine(profile):
+    """A surface around the z axis, whose parts share no normals: of each (radius, height), (radius, height)."""
+
+    def make(name):
+        parts_ = [_turned(*ends) for ends in profile]
+        points = [point for part, _ in parts_ for point in part]
+        faces, start = [], 0
+        for part, part_faces in parts_:
+            faces += [[start + corner for corner in face] for face in part_faces]
+            start += len(part)
+        return parts.mesh_from_points(name, points, faces)
+
+    return make
+
+
+def _turned(low, high, segments=96):
+    """(Points, faces) between two circles around the z axis; a tip has a point, and so a normal, for each face."""
+    turns = 2.0 * np.pi * np.arange(segments) / segments
+    ring = np.stack([np.cos(turns), np.sin(turns)], axis=1)
+    points = [(*(radius * xy), z) for radius, z in (low, high) for xy in ring]
+    corners = [(i, (i + 1) % segments, segments + (i + 1) % segments, segments + i) for i in range(segments)]
+    if not low[0]:
+        return points, [(a, c, d) for a, _, c, d in corners]
+    return points, [(a, b, d) for a, b, _, d in corners] if not high[0] else corners
+
+
 _SHAPES = {
+    "fine ball": lambda name: parts.sphere_mesh(name, 128, 64, 0.9),
+    "fine cone": _fine((((0.8, -0.7), (0.0, 0.7)), ((0.0, -0.7), (0.8, -0.7)))),
+    "fine cylinder": _fine((((0.7, -0.6), (0.7, 0.6)), ((0.0, -0.6), (0.7, -0.6)), ((0.7, 0.6), (0.0, 0.6)))),
+    "vast plane": lambda name: parts.plane_mesh(name, 2000.0),
     "ball": lambda name: parts.sphere_mesh(name, 16, 8, 0.9),
     "cube": lambda name: parts.cube_mesh(name, 1.3),
     "plane": lambda name: parts.plane_mesh(name, 1.5),
@@ -94,7 +121,8 @@ def _add_normals(mesh, lean):
 
 _TYPES = {
     "FLOAT": ("value", 1), "INT": ("value", 1), "INT8": ("value", 1), "BOOLEAN": ("value", 1), "FLOAT2": ("vector", 2),
-    "FLOAT_VECTOR": ("vector", 3), "FLOAT_COLOR": ("color", 4), "BYTE_COLOR": ("color", 4),
+    "FLOAT_VECTOR": ("vector", 3), "FLOAT_COLOR": ("color", 4), "BYTE_COLOR": ("color", 4), "FLOAT4": ("vector", 4),
+    "QUATERNION": ("value", 4), "FLOAT4X4": ("value", 16), "INT16_2D": ("value", 2), "INT32_2D": ("value", 2),
 }  # fmt: skip
 
 
@@ -103,10 +131,14 @@ def build_attribute(mesh, name, fields):
     if "COLOR" in kind and domain in ("POINT", "CORNER"):
         attribute = mesh.color_attributes.new(name, kind, domain)
     else:
-        attribute = mesh.attributes.new(name, kind, domain)
+        try:
+            attribute = mesh.attributes.new(name, kind, domain)
+        except TypeError:
+            # A type that this Blender lacks.
+            return
     field, width = _TYPES[kind]
     values = np.random.default_rng(fields["seed"]).random((len(attribute.data), width))
-    if kind in ("INT", "INT8"):
+    if kind.startswith("INT"):
         values = np.floor(4.0 * values).astype(np.int32)
     elif kind == "BOOLEAN":
         values = values < 0.5
@@ -114,43 +146,3 @@ def build_attribute(mesh, name, fields):
         values = values.astype(np.float32)
     attribute.data.foreach_set(field, values.ravel())
     mesh.update()
-
-
-def _pixels(fields):
-    width, height = fields["size"]
-    source = np.random.default_rng(fields["seed"])
-    pixels = np.ones((height, width, 4))
-    pixels[..., :3] = source.uniform(0.05, 0.95, (height, width, 3))
-    if "peak" in fields:
-        # Few neighbours are as unlike as noise: a sky is smooth, but for its sun.
-        x, y = np.meshgrid((np.arange(width) + 0.5) / width, (np.arange(height) + 0.5) / height)
-        pixels[..., 0], pixels[..., 1], pixels[..., 2] = 0.2 + 0.7 * y, 0.5 + 0.4 * np.sin(2 * np.pi * x), 0.8 - 0.5 * x
-        pixels[int(0.7 * height), int(pixels[0, 0, 0] * width) % width, :3] *= fields["peak"]
-    if fields.get("alpha", "none") == "smooth":
-        pixels[..., 3] = source.uniform(0.0, 1.0, (height, width))
-    elif fields.get("alpha", "none") == "cut":
-        pixels[..., 3] = source.uniform(0.0, 1.0, (height, width)) < 0.5
-    return pixels
-
-
-def build_image(name, fields):
-    pixels, kind = _pixels(fields), fields["format"]
-    space = images.LINEAR if fields["space"] == "Linear" else fields["space"]
-    if kind in ("BYTE", "FLOAT"):
-        image = images.image(name, pixels, "Non-Color", is_float=kind == "FLOAT", pack=kind == "BYTE")
-    else:
-        stem = os.path.join(bpy.app.tempdir, name)
-        if kind == "PNG8":
-            path = f"{stem}.png"
-            with open(path, "wb") as file:
-                file.write(png.encode(pixels[::-1]))
-        else:
-            path = image_files.write({"PNG16": "PNG"}.get(kind, kind), stem, pixels[..., :3] if kind == "HDR" else pixels)
-        image = bpy.data.images.load(path)
-    try:
-        image.colorspace_settings.name = space
-    except TypeError:
-        # A space that this Blender lacks.
-        image.colorspace_settings.name = "sRGB"
-    image.alpha_mode = fields.get("alpha_mode", "STRAIGHT")
-    return image

@@ -4,7 +4,10 @@ import bpy
 
 from .record import is_link
 
-_TYPES = {"f": ("NodeSocketFloat", "FLOAT"), "c": ("NodeSocketColor", "RGBA"), "v": ("NodeSocketVector", "VECTOR")}
+_TYPES = {
+    "f": ("NodeSocketFloat", "FLOAT"), "c": ("NodeSocketColor", "RGBA"), "v": ("NodeSocketVector", "VECTOR"),
+    "s": ("NodeSocketShader", "SHADER"),
+}  # fmt: skip
 # Principled's sockets since 4.0, and what 3.x calls them; nodes whose inputs were called otherwise.
 _OTHER_NAMES = {
     "Specular IOR Level": ("Specular",), "Transmission Weight": ("Transmission",), "Coat Weight": ("Clearcoat",),

@@ -5,7 +5,7 @@ from mathutils import Matrix
 
 from scenes import parts
 
-from . import build_meshes, build_nodes
+from . import build_images, build_meshes, build_nodes
 
 _MODIFIER_SHAPES = {"MESH"}
 
@@ -32,7 +32,7 @@ class Builder:
         pass
 
     def _image(self, name, fields):
-        self.things[name] = build_meshes.build_image(name, fields)
+        self.things[name] = build_images.build_image(name, fields)
 
     def _material(self, name, fields):
         material = self.things[name] = bpy.data.materials.new(name)
@@ -51,10 +51,12 @@ class Builder:
             material.cycles.use_bump_map_correction = False
 
     def _world(self, name, fields):
-        world = self.things[name] = self.scene.world = bpy.data.worlds.new(name)
+        world = self.things[name] = bpy.data.worlds.new(name)
+        if not fields.get("apart"):
+            self.scene.world = world
         self.trees[name] = parts.enable_nodes(world)
         # A finer map of where the sky is bright takes longer than all renders of such a scene.
-        world.cycles.sampling_method, world.cycles.sample_map_resolution = "MANUAL", 64
+        world.cycles.sampling_method, world.cycles.sample_map_resolution = "MANUAL", fields.get("map_resolution", 64)
         for ray in fields.get("hidden_from", ()):
             setattr(world.cycles_visibility, ray, False)
         for setting, value in fields.get("mist", {}).items():
@@ -126,6 +128,8 @@ class Builder:
                 lamp.use_shadow = False
             else:
                 lamp.cycles.cast_shadow = False
+        if fields.get("portal"):
+            lamp.cycles.is_portal = True
         if fields.get("nodes"):
             if bpy.app.version < (5, 2):
                 lamp.use_nodes = True
@@ -135,7 +139,7 @@ class Builder:
         camera = self.things[name] = bpy.data.cameras.new(name)
         for owner, key in ((camera, "settings"), (camera.dof, "dof")):
             for setting, value in fields.get(key, {}).items():
-                setattr(owner, setting, value)
+                setattr(owner, setting, self.find(value) if setting == "focus_object" else value)
         for setting, value in fields.get("panorama", {}).items():
             try:
                 setattr(camera if hasattr(camera, setting) else camera.cycles, setting, value)
@@ -160,6 +164,8 @@ class Builder:
         if "material" in fields and len(thing.material_slots):
             thing.material_slots[0].link = "OBJECT"
             thing.material_slots[0].material = self.find(fields["material"])
+        if "exact" in fields:
+            thing.lancer.shape = fields["exact"]
         if "terminator" in fields:
             _set_any((thing, thing.cycles), "shadow_terminator_geometry_offset", fields["terminator"])
         collection = self.find(fields.get("collection"))
@@ -201,7 +207,7 @@ class Builder:
             if thing is None:
                 continue
             collection.objects.link(thing)
-            if fields.get("only"):
+            if fields.get("only") and thing.name in self.scene.collection.objects:
                 self.scene.collection.objects.unlink(thing)
         switch = fields.get("switch", "none")
         if switch == "hide_render":
@@ -213,12 +219,13 @@ class Builder:
 
     def _film(self, name, fields):
         for setting, value in fields.items():
-            setattr(self.scene.render, setting, value)
+            setattr(self.scene.render if hasattr(self.scene.render, setting) else self.scene.cycles, setting, value)
 
     def _layer(self, name, fields):
         layer = bpy.context.view_layer
         for setting, value in fields.items():
-            setattr(layer, setting, self.find(value) if setting == "material_override" else value)
+            if hasattr(layer, setting):
+                setattr(layer, setting, self.find(value) if setting.endswith("_override") else value)
 
     # ---- nodes ----
 

@@ -57,6 +57,7 @@ SHADERS = {
     "ShaderNodeBsdfTranslucent": Kind({"Color": C, "Normal": NORMAL}, {"BSDF": "s"}),
     "ShaderNodeBsdfTransparent": Kind({"Color": C}, {"BSDF": "s"}),
     "ShaderNodeEmission": Kind({"Color": C, "Strength": ("f", 0.0, 2.0)}, {"Emission": "s"}, weight=2.0),
+    "ShaderNodeBackground": Kind({"Color": C, "Strength": ("f", 0.0, 2.0)}, {"Background": "s"}, weight=0.2),
     "ShaderNodeHoldout": Kind({}, {"Holdout": "s"}, weight=0.3),
     "ShaderNodeMixShader": Kind({"Fac": F, "Shader": ("s", 0, 0), "Shader_001": ("s", 0, 0)}, {"Shader": "s"}, weight=3.0),
     "ShaderNodeAddShader": Kind({"Shader": ("s", 0, 0), "Shader_001": ("s", 0, 0)}, {"Shader": "s"}),
@@ -79,7 +80,7 @@ DISPLACEMENTS = {
 # Closures that are the same mathematics in both engines; others have tables in one of them.
 EXACT = {
     "ShaderNodeBsdfDiffuse", "ShaderNodeBsdfTranslucent", "ShaderNodeBsdfTransparent", "ShaderNodeEmission",
-    "ShaderNodeHoldout", "ShaderNodeMixShader", "ShaderNodeAddShader",
+    "ShaderNodeBackground", "ShaderNodeHoldout", "ShaderNodeMixShader", "ShaderNodeAddShader",
 }  # fmt: skip
 # Closures that pass on to others, and those that show what is behind.
 MIXED = {"ShaderNodeMixShader", "ShaderNodeAddShader"}

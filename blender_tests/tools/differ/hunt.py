@@ -11,6 +11,8 @@ from .shrinker import shrink
 _SECOND_SEED, _MORE = 101, 4
 FAULTS = ("fail", "error", "crash", "timeout", "memory")
 _MOST_TOLD = 4
+# A smaller scene has the same fault if its difference, in limits, is at least this share of the whole scene's.
+_LEAST_SHARE, _MOST_SHARE = 0.25, 100.0
 
 
 class Hunt:
@@ -85,7 +87,11 @@ class Hunt:
 
         def fails(candidate):
             found = self.judge(candidate, most_samples, _SECOND_SEED)
-            if found["verdict"] != verdict or found["told"] or (verdict == "error" and found["text"] != answer["text"]):
+            if found["verdict"] != verdict or found["told"] or found.get("pass") != answer.get("pass"):
+                return False
+            if found.get("share", 1.0) < min(answer.get("share", 1.0), _MOST_SHARE) * _LEAST_SHARE:
+                return False
+            if verdict == "error" and found["text"] != answer["text"]:
                 return False
             smallest[0] = found
             return True

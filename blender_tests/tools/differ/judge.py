@@ -6,14 +6,11 @@ from addon.engine import results
 from addon.messages.severity import Severity
 from scenes.parity import figures
 from scenes.parity.catalogue import Case
-from scenes.parity.figures import Limit
-from tools.parity import contest
 
+from . import rounds
 from .builder import build
 
 _SAMPLES = 32  # of each half of each engine, at first
-# Cycles keeps the data of one sample up to 0.005 pixels off the middle; see scenes/parity/passes_data.py.
-_DATA_LIMIT = Limit(0.005, 2e-3)
 
 
 def make_case(records):
@@ -23,7 +20,7 @@ def make_case(records):
     fields |= {name: frame[name] for name in ("bounces", "transparent_bounces", "filter_width") if name in frame}
     kind = frame.get("kind", "LOBES")
     if kind == "DATA":
-        fields |= {"kind_name": "PIXELS", "limit": _DATA_LIMIT, "filter_width": 0.01, "samples": _SAMPLES // 2}
+        fields |= {"kind_name": "PIXELS", "filter_width": 0.01, "samples": _SAMPLES // 2}
     else:
         fields["kind_name"] = kind
     return Case("scene", "differ", lambda scene: _build(scene, records), **fields)
@@ -42,7 +39,7 @@ def judge(records, folder, most_samples, first_seed=1):
     started = time.perf_counter()
     results.last_messages.clear()
     case = make_case(records)
-    outcome = contest.run(case, folder, most_samples=most_samples, first_seed=first_seed)
+    outcome = rounds.run(case, folder, most_samples, first_seed)
     answer = {
         "verdict": outcome.verdict,
         "note": outcome.note,
@@ -53,10 +50,11 @@ def judge(records, folder, most_samples, first_seed=1):
     if outcome.worst is not None:
         numbers = figures.decisive(outcome.parts[outcome.worst][0], case.limits)
         answer |= {"pass": outcome.worst, "mean": numbers.mean, "p99": numbers.p99, "noise": numbers.noise_mean}
+        answer["share"] = figures.share(numbers, case.limits)
         answer["text"] = f"{outcome.worst}: mean {numbers.mean:.3%} of {case.limits.mean:.2%}, worst block {numbers.p99:.3%}"
         answer["text"] += f" of {case.limits.p99:.2%}, noise {numbers.noise_mean:.3%}; {outcome.samples} samples"
     else:
-        answer["text"] = outcome.note
+        answer["text"] = outcome.note or f"equal: {', '.join(case.passes)}"
     return {**answer, "seconds": time.perf_counter() - started}
 
 

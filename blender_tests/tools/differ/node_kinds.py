@@ -95,7 +95,9 @@ VALUES = {
         3.0,
     ),
     "ShaderNodeMixRGB": Kind(
-        {"Fac": ("f", -0.2, 1.2), "Color1": C, "Color2": C}, {"Color": "c"}, {"blend_type": _BLENDS, "use_clamp": SWITCH}
+        {"Fac": ("f", -0.2, 1.2), "Color1": C, "Color2": C},
+        {"Color": "c"},
+        {"blend_type": _BLENDS, "use_clamp": SWITCH, "use_alpha": (False, False, True)},
     ),
     "ShaderNodeGamma": Kind({"Color": C, "Gamma": ("f", 0.3, 3.0)}, {"Color": "c"}),
     "ShaderNodeInvert": Kind({"Fac": F, "Color": C}, {"Color": "c"}),
@@ -107,6 +109,13 @@ VALUES = {
     "ShaderNodeCombineColor": Kind({"Red": F, "Green": F, "Blue": F}, {"Color": "c"}, {"mode": ("RGB", "HSV", "HSL")}),
     "ShaderNodeSeparateColor": Kind(
         {"Color": C}, {"Red": "f", "Green": "f", "Blue": "f"}, {"mode": ("RGB", "HSV", "HSL")}
+    ),
+    "ShaderNodeCombineRGB": Kind({"R": F, "G": F, "B": F}, {"Image": "c"}, weight=0.3),
+    "ShaderNodeSeparateRGB": Kind({"Image": C}, {"R": "f", "G": "f", "B": "f"}, weight=0.3),
+    "ShaderNodeCombineHSV": Kind({"H": F, "S": F, "V": F}, {"Color": "c"}, weight=0.3),
+    "ShaderNodeSeparateHSV": Kind({"Color": C}, {"H": "f", "S": "f", "V": "f"}, weight=0.3),
+    "ShaderNodeVectorTransform": Kind(
+        {"Vector": V}, {"Vector": "v"}, {"vector_type": ("POINT", "VECTOR", "NORMAL")}, 0.3, special=("same_space",)
     ),
     "ShaderNodeValToRGB": Kind({"Fac": F}, {"Color": "c", "Alpha": "f"}, special=("ramp",), weight=2.0, always=("Fac",)),
     "ShaderNodeRGBCurve": Kind({"Fac": F, "Color": C}, {"Color": "c"}, special=("curves",)),
@@ -192,7 +201,12 @@ VALUES = {
     ),
     "ShaderNodeVertexColor": Kind({}, {"Color": "c", "Alpha": "f"}, special=("layer",), weight=2.0),
     "ShaderNodeNewGeometry": Kind(
-        {}, {"Position": "v", "Normal": "v", "Tangent": "v", "True Normal": "v", "Incoming": "v", "Backfacing": "f"}, weight=2.0
+        {},
+        {
+            "Position": "v", "Normal": "v", "Tangent": "v", "True Normal": "v", "Incoming": "v", "Backfacing": "f",
+            "Parametric": "v",
+        },
+        weight=2.0,
     ),
     "ShaderNodeObjectInfo": Kind(
         {}, {"Location": "v", "Color": "c", "Alpha": "f", "Object Index": "f", "Material Index": "f", "Random": "f"}
@@ -202,7 +216,8 @@ VALUES = {
         {
             "Is Camera Ray": "f", "Is Shadow Ray": "f", "Is Diffuse Ray": "f", "Is Glossy Ray": "f", "Is Singular Ray": "f",
             "Is Reflection Ray": "f", "Is Transmission Ray": "f", "Ray Length": "f", "Ray Depth": "f", "Diffuse Depth": "f",
-            "Glossy Depth": "f", "Transparent Depth": "f", "Transmission Depth": "f",
+            "Glossy Depth": "f", "Transparent Depth": "f", "Transmission Depth": "f", "Is Volume Scatter Ray": "f",
+            "Portal Depth": "f",
         },
         weight=0.5,
     ),

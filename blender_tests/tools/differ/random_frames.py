@@ -7,7 +7,7 @@ from .record import Record
 _LIGHT_PASSES = (
     "Diffuse Direct", "Diffuse Indirect", "Diffuse Color", "Glossy Direct", "Glossy Indirect", "Glossy Color",
     "Transmission Direct", "Transmission Indirect", "Transmission Color", "Emission", "Environment", "Ambient Occlusion",
-    "Mist",
+    "Mist", "Denoising Albedo", "Denoising Normal", "Denoising Depth",
 )  # fmt: skip
 _DATA_PASSES = ("Depth", "Position", "Normal", "UV", "Object Index", "Material Index")
 _PANORAMAS = (
@@ -21,7 +21,7 @@ def frame(dice):
     film, layer = {}, {}
     frame = {
         "size": [48, 32],
-        "bounces": dice.pick({0: 2, 1: 4, 2: 2, 3: 1}),
+        "bounces": dice.pick({0: 3, 1: 5, 2: 2, 3: 0.5}),
         "transparent_bounces": dice.pick((8, 8, 8, 1, 0)),
     }
     is_data = dice.chance(0.15)
@@ -29,13 +29,18 @@ def frame(dice):
         frame |= {"kind": "DATA", "passes": dice.some(_DATA_PASSES, 0.5) or ["Normal"]}
     else:
         frame["passes"] = ["Combined", *(dice.some(_LIGHT_PASSES, 0.4) if dice.chance(0.3) else ())]
+        if len(frame["passes"]) > 1 and dice.chance(0.7):
+            # Passes of light after many bounces are much noisier than their sum.
+            frame["bounces"] = min(1, frame["bounces"])
         if dice.chance(0.2):
             frame["filter_width"] = dice.number(0.8, 2.0)
     if dice.chance(0.2):
         film["film_transparent"] = True
+        if dice.chance(0.3):
+            film |= {"film_transparent_glass": True, "film_transparent_roughness": dice.number(0.0, 0.6)}
     # Blender 5 cannot write two passes of pixels that are not square.
     if dice.chance(0.06) and len(frame["passes"]) == 1:
-        film["pixel_aspect_y"] = 1.5
+        film[dice.pick(("pixel_aspect_x", "pixel_aspect_y"))] = 1.5
     if dice.chance(0.06):
         film |= {"use_border": True, "border_min_x": 0.1, "border_max_x": 0.8, "border_min_y": 0.2, "border_max_y": 0.9}
     if dice.chance(0.04):
@@ -44,6 +49,10 @@ def frame(dice):
         layer["use_sky"] = False
     if dice.chance(0.03):
         layer["use_solid"] = False
+    if dice.chance(0.03):
+        layer["world_override"] = "@Other world"
+    if is_data and dice.chance(0.1):
+        layer["pass_alpha_threshold"] = dice.number(0.0, 1.0)
     return frame, [Record("film", "Film", film), Record("layer", "Layer", layer), *_camera(dice, is_data)]
 
 
@@ -59,10 +68,16 @@ def _camera(dice, is_data):
     if dice.chance(0.1):
         settings |= {"clip_start": dice.number(0.1, 4.5), "clip_end": dice.number(5.0, 9.0)}
     if dice.chance(0.1):
-        settings |= {"sensor_fit": dice.pick(("HORIZONTAL", "VERTICAL"))}
+        settings |= {
+            "sensor_fit": dice.pick(("HORIZONTAL", "VERTICAL")),
+            "sensor_width": dice.number(25.0, 40.0),
+            "sensor_height": dice.number(18.0, 40.0),
+        }
     fields = {"settings": settings}
     if not is_data and dice.chance(0.1):
-        lens = {"use_dof": True, "focus_distance": dice.number(3.0, 6.0), "aperture_fstop": dice.number(0.2, 2.0)}
+        lens = {"use_dof": True, "focus_distance": dice.number(3.0, 6.0), "aperture_fstop": dice.number(0.6, 4.0)}
+        if dice.chance(0.2):
+            lens["focus_object"] = "@Thing 1"
         if dice.chance(0.5):
             lens |= {
                 "aperture_blades": dice.whole(3, 6),
@@ -71,13 +86,38 @@ def _camera(dice, is_data):
             }
         fields["dof"] = lens
     if kind == "PANO":
-        fields["panorama"] = {
-            "panorama_type": dice.pick(_PANORAMAS),
-            "fisheye_fov": dice.number(1.0, 3.0),
-            "fisheye_lens": dice.number(8.0, 20.0),
-        }
+        fields["panorama"] = _panorama(dice)
         location = [round(x / 2, 3) for x in location]
     place = {"data": "@Camera", "location": location, "target": [dice.number(-0.3, 0.3), 0.0, dice.number(0.7, 1.1)]}
     if dice.chance(0.08):
         place["scale"] = [dice.number(0.5, 2.0)] * 3
-    return [Record("camera", "Camera", fields), Record("object", "Camera object", place)]
+        if dice.chance(0.4):
+            place["scale"][dice.whole(0, 2)] *= -1
+    records = [Record("camera", "Camera", fields), Record("object", "Camera object", place)]
+    if dice.chance(0.05):
+        rig = {"location": dice.vector(-0.2, 0.2), "rotation": dice.vector(-0.2, 0.2), "scale": [dice.number(0.8, 1.2)] * 3}
+        records += [Record("object", "Rig", rig), Record("parent", "Camera object", {"parent": "@Rig"})]
+    return records
+
+
+def _panorama(dice):
+    """What each kind of panorama reads; a Blender leaves out what it lacks."""
+    fields = {
+        "panorama_type": dice.pick(_PANORAMAS),
+        "fisheye_fov": dice.number(1.0, 3.0),
+        "fisheye_lens": dice.number(8.0, 20.0),
+    }
+    if dice.chance(0.5):
+        fields |= {f"{name}_min": dice.number(-1.4, -0.3) for name in ("latitude", "longitude")}
+        fields |= {f"{name}_max": dice.number(0.3, 1.4) for name in ("latitude", "longitude")}
+    if dice.chance(0.5):
+        fields |= {
+            "central_cylindrical_range_u_min": dice.number(-2.0, -0.5),
+            "central_cylindrical_range_u_max": dice.number(0.5, 2.0),
+            "central_cylindrical_range_v_min": dice.number(-1.0, -0.4),
+            "central_cylindrical_range_v_max": dice.number(0.4, 1.5),
+            "central_cylindrical_radius": dice.number(0.5, 2.0),
+        }
+    if dice.chance(0.5):
+        fields |= {"fisheye_polynomial_k1": dice.number(-0.06, -0.02), "fisheye_polynomial_k2": dice.number(-2e-3, 2e-3)}
+    return fields

@@ -3,9 +3,13 @@
 from . import closure_kinds, node_kinds
 from .record import Record
 
-UV_MAPS = ("UVMap", "Second", "")
-ATTRIBUTES = ("Number", "Whole", "Vector", "Color", "Byte", "Flag", "Pair", "UVMap", "Missing")
-COLORS = ("Color", "Byte")
+UV_MAPS = ("UVMap", "Second", "", "Missing")
+# Of each the share: attributes that meshes may have, names with a meaning of their own, and none of either.
+ATTRIBUTES = {
+    "Number": 2, "Whole": 2, "Vector": 2, "Color": 2, "Byte": 2, "Flag": 2, "Pair": 2, "Four": 1, "Odd": 1, "UVMap": 2,
+    "generated": 0.5, "uv": 0.5, "vertex_color": 0.5, "position": 0.3, "material_index": 0.2, "Missing": 1,
+}  # fmt: skip
+COLORS = ("Color", "Byte", "Color", "Byte", "", "Missing")
 _ALPHAS = (1.0, 1.0, 0.5, 0.0)
 _DEEPEST = 4
 
@@ -29,47 +33,17 @@ class Trees:
         self.budget = dice.whole(1, 12)
         inputs = {"Surface": self._shader(tree, 0)}
         if dice.chance(0.03):
-            inputs["Surface"] = self._value(tree, "c", 1)
+            inputs["Surface"] = self.value(tree, "c", 1)
         if dice.chance(0.08):
             self.budget += 3
             inputs["Displacement"] = self._node(
                 tree, dice.pick(list(closure_kinds.DISPLACEMENTS)), "v", 1, closure_kinds.DISPLACEMENTS
             )
-        self._write(tree, "ShaderNodeOutputMaterial", {}, inputs)
-
-    def world(self, tree, image=None):
-        """A background of one colour, of a picture, or of computed nodes."""
-        dice = self.dice
-        color = dice.color(0.2, 0.9)
-        if image is not None:
-            props = {"image": f"@{image}", "projection": dice.pick(("EQUIRECTANGULAR", "EQUIRECTANGULAR", "MIRROR_BALL"))}
-            inputs = {}
-            if dice.chance(0.6):
-                place = self._write(tree, "ShaderNodeTexCoord", {}, {})
-                turned = {"Vector": [place, "Generated"], "Rotation": dice.vector(-3.0, 3.0)}
-                if dice.chance(0.3):
-                    turned["Scale"] = dice.vector(0.5, 2.0)
-                inputs = {"Vector": [self._write(tree, "ShaderNodeMapping", {}, turned), "Vector"]}
-            color = [self._write(tree, "ShaderNodeTexEnvironment", props, inputs), "Color"]
-        elif dice.chance(0.15):
-            self.budget = 4
-            color = self._value(tree, "c", 2)
-        background = self._write(tree, "ShaderNodeBackground", {}, {"Color": color, "Strength": dice.number(0.2, 1.2)})
-        self._write(tree, "ShaderNodeOutputWorld", {}, {"Surface": [background, "Background"]})
-
-    def light(self, tree):
-        """Constant light: colours and numbers that ask for no place."""
-        dice = self.dice
-        color = dice.color(0.2, 1.0)
-        if dice.chance(0.5):
-            warm = self._write(tree, "ShaderNodeBlackbody", {}, {"Temperature": dice.number(2000.0, 9000.0)})
-            color = [warm, "Color"]
-        emission = self._write(tree, "ShaderNodeEmission", {}, {"Color": color, "Strength": dice.number(0.2, 2.0)})
-        self._write(tree, "ShaderNodeOutputLight", {}, {"Surface": [emission, "Emission"]})
+        self.write(tree, "ShaderNodeOutputMaterial", {}, inputs)
 
     # ---- nodes ----
 
-    def _write(self, tree, kind, props, inputs, mute=False, **more):
+    def write(self, tree, kind, props, inputs, mute=False, **more):
         self._count += 1
         name = f"{tree}/{self._count}"
         fields = {"tree": tree, "kind": kind, "props": props, "inputs": inputs, **more}
@@ -82,13 +56,15 @@ class Trees:
 
     def _shader(self, tree, depth):
         kinds = {name: kind.weight for name, kind in closure_kinds.SHADERS.items()}
+        if self.dice.chance(0.07) and depth < 2:
+            return self._passed_on(tree, self._group(tree, "s", depth))
         left_out = closure_kinds.MIXED if depth > 2 or self.budget <= 2 else set()
         if self.is_opaque:
             left_out = left_out | closure_kinds.CLEAR
         kinds = {name: weight for name, weight in kinds.items() if name not in left_out}
         return self._passed_on(tree, self._node(tree, self.dice.pick(kinds), "s", depth, closure_kinds.SHADERS))
 
-    def _value(self, tree, wanted, depth):
+    def value(self, tree, wanted, depth):
         """A link to a node that gives a value."""
         if self.dice.chance(0.08) and depth < 3:
             return self._passed_on(tree, self._group(tree, wanted, depth))
@@ -98,7 +74,7 @@ class Trees:
     def _passed_on(self, tree, link):
         """The link, now and then by way of a reroute."""
         if self.dice.chance(0.05):
-            return [self._write(tree, "NodeReroute", {}, {"0": link}), "0"]
+            return [self.write(tree, "NodeReroute", {}, {"0": link}), "0"]
         return link
 
     def _node(self, tree, name, wanted, depth, kinds):
@@ -120,7 +96,7 @@ class Trees:
             value = None if self.is_opaque and key == "Alpha" else self._input(tree, kind, key, type_, low, high, depth)
             if value is not None:
                 inputs[key] = value
-        return [self._write(tree, name, props, inputs, mute=wanted != "s" and dice.chance(0.04), **more), output]
+        return [self.write(tree, name, props, inputs, mute=wanted != "s" and dice.chance(0.04), **more), output]
 
     def _input(self, tree, kind, key, type_, low, high, depth):
         """A value for an input: constant, a link, or None for the node's own."""
@@ -134,7 +110,7 @@ class Trees:
             return self._at(tree, dice.pick(node_kinds.PLACES), "v", depth) if can_link and dice.chance(0.6) else None
         share = 0.85 if key in kind.always else 0.25
         if can_link and "constant" not in kind.special and dice.chance(0.4 * share if "sparse" in kind.special else share):
-            return self._value(tree, type_, depth + 1)
+            return self.value(tree, type_, depth + 1)
         if dice.chance(0.75 if "sparse" in kind.special else 0.15):
             return None
         if type_ == "f":
@@ -147,6 +123,7 @@ class Trees:
     def _group(self, tree, wanted, depth):
         """A link to a group of a few nodes and its input; groups of one kind of output are used again."""
         dice = self.dice
+        # No group holds itself: those that are not finished are not known yet.
         known = [group for group in self._groups if group[1] == wanted]
         if known and dice.chance(0.4):
             name, _, source = dice.pick(known)
@@ -154,24 +131,30 @@ class Trees:
             self._group_count += 1
             name, source = f"Group {self._group_count}", dice.pick("fcv")
             kept, self.records = self.records, []
-            budget, self.budget = self.budget, dice.whole(1, 4)
-            inside = self._value(name, wanted, 2)
-            read = self._write(name, "NodeGroupInput", {}, {})
-            mixed = self._write(
-                name,
-                "ShaderNodeMixRGB",
-                {"blend_type": "MIX"},
-                {"Fac": dice.number(), "Color1": inside, "Color2": [read, "In"]},
-            )
-            self._write(name, "NodeGroupOutput", {}, {"Out": [mixed, "Color"]})
+            budget, self.budget = self.budget, dice.whole(2, 5)
+            read = [self.write(name, "NodeGroupInput", {}, {}), "In"]
+            result = self._mixed_shaders(name, source, read) if wanted == "s" else self._mixed_values(name, wanted, read)
+            self.write(name, "NodeGroupOutput", {}, {"Out": result})
             group = Record("group", name, {"inputs": {"In": source}, "outputs": {"Out": wanted}})
             self.records = [group, *self.records, *kept]
             self.budget = budget
-            # It is known from here on: a group cannot hold itself.
             self._groups.append((name, wanted, source))
-        value = self._value(tree, source, depth + 1) if self.budget > 0 and dice.chance(0.6) else None
+        value = self.value(tree, source, depth + 1) if self.budget > 0 and dice.chance(0.6) else None
         inputs = {} if value is None else {"In": value}
-        return [self._write(tree, "ShaderNodeGroup", {"node_tree": f"@{name}"}, inputs, mute=dice.chance(0.05)), "Out"]
+        mute = wanted != "s" and dice.chance(0.05)
+        return [self.write(tree, "ShaderNodeGroup", {"node_tree": f"@{name}"}, inputs, mute=mute), "Out"]
+
+    def _mixed_values(self, group, wanted, read):
+        inside = self.value(group, wanted, 1)
+        mixed = {"Fac": self.dice.number(), "Color1": inside, "Color2": read}
+        return [self.write(group, "ShaderNodeMixRGB", {"blend_type": "MIX"}, mixed), "Color"]
+
+    def _mixed_shaders(self, group, source, read):
+        """Two shaders mixed by the group's input, or a shader in its colour."""
+        if source == "f":
+            shaders = {"Fac": read, "Shader": self._shader(group, 2), "Shader_001": self._shader(group, 2)}
+            return [self.write(group, "ShaderNodeMixShader", {}, shaders), "Shader"]
+        return [self.write(group, "ShaderNodeBsdfDiffuse", {}, {"Color": read}), "BSDF"]
 
     # ---- settings that are no choice ----
 
@@ -200,9 +183,12 @@ class Trees:
         elif special == "uv_map":
             props["uv_map"] = dice.pick(UV_MAPS)
         elif special == "attribute":
+            # Without a name the node gives nothing, which Lancer reports.
             props["attribute_name"] = dice.pick(ATTRIBUTES)
         elif special == "layer":
             props["layer_name"] = dice.pick(COLORS)
+        elif special == "same_space":
+            props["convert_from"] = props["convert_to"] = dice.pick(("WORLD", "OBJECT", "CAMERA"))
         elif special == "ramp":
             places = sorted(dice.number() for _ in range(dice.whole(2, 4)))
             more["ramp"] = {

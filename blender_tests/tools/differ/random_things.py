@@ -4,7 +4,9 @@ from .record import Record
 
 # Each fills about a unit; the share of scenes that hold it.
 _SHAPES = {"ball": 4, "cube": 3, "plane": 2, "grid": 2, "cone": 1, "torus": 1, "heap": 1, "monkey": 1}
-_DOMAINS = ("POINT", "FACE", "CORNER")
+_DOMAINS = ("POINT", "FACE", "CORNER", "EDGE")
+# Surfaces that keep an area, and no second side, when they are flattened.
+_OPEN = ("plane", "grid")
 # By name: the types that an attribute of it may have.
 _ATTRIBUTES = {
     "Number": ("FLOAT",),
@@ -14,6 +16,8 @@ _ATTRIBUTES = {
     "Byte": ("BYTE_COLOR", "FLOAT_COLOR"),
     "Flag": ("BOOLEAN",),
     "Pair": ("FLOAT2",),
+    "Four": ("QUATERNION", "FLOAT4"),
+    "Odd": ("FLOAT4X4", "INT16_2D", "INT32_2D"),
 }
 _RAYS = ("camera", "diffuse", "glossy", "transmission", "shadow")
 
@@ -59,7 +63,7 @@ class Things:
             else:
                 mesh = f"Mesh {number}"
                 self._mesh(mesh, dice.pick(_SHAPES))
-            self._object(name, mesh, place)
+            self._object(name, mesh, place, scale=self._flat_scale() if self._is_open(mesh) and dice.chance(0.08) else None)
             for _ in range(dice.pick({0: 12, 1: 4, 2: 1})):
                 self._modifier(name)
         if dice.chance(0.25):
@@ -89,7 +93,7 @@ class Things:
         for attribute in dice.some(_ATTRIBUTES, 0.4):
             domain = dice.pick(_DOMAINS)
             type_ = dice.pick(_ATTRIBUTES[attribute])
-            if "COLOR" in type_ and domain == "FACE" and dice.chance(0.8):
+            if "COLOR" in type_ and domain in ("FACE", "EDGE") and dice.chance(0.8):
                 domain = "CORNER"
             fields = {"mesh": f"@{name}", "type": type_, "domain": domain, "seed": dice.whole(0, 99)}
             self.records.append(Record("attribute", attribute, fields))
@@ -113,6 +117,8 @@ class Things:
             settings["pass_index"] = dice.whole(0, 9)
         if dice.chance(0.2):
             settings["color"] = [*dice.color(), dice.number()]
+        if dice.chance(0.015):
+            settings["hide_render"] = True
         if dice.chance(0.05):
             settings["delta_scale"] = self._scale()
         if dice.chance(0.05):
@@ -133,6 +139,15 @@ class Things:
         scale = [round(size * dice.number(0.5, 1.4), 3) for _ in range(3)]
         return [-x if kind == "mirrored" and dice.chance(0.5) else x for x in scale]
 
+    def _is_open(self, mesh):
+        fields = next(record.fields for record in self.records if record.verb == "mesh" and record.name == mesh)
+        return fields["shape"] in _OPEN and fields["smooth"] == "no"
+
+    def _flat_scale(self):
+        scale = self._scale()
+        scale[self.dice.whole(0, 2)] = 0.0
+        return scale
+
     def _parent(self, child, number):
         """An empty that stretches what is turned below it: shear."""
         dice = self.dice
@@ -145,6 +160,10 @@ class Things:
             fields["scale"][dice.whole(0, 2)] *= -1
         self.records.append(Record("object", f"Parent {number}", fields))
         self.records.append(Record("parent", child, {"parent": f"@Parent {number}", "inverse": dice.chance(0.3)}))
+        if dice.chance(0.3):
+            above = {"rotation": dice.vector(-0.5, 0.5), "scale": [dice.number(0.7, 1.3) for _ in range(3)]}
+            self.records.append(Record("object", f"Grandparent {number}", above))
+            self.records.append(Record("parent", f"Parent {number}", {"parent": f"@Grandparent {number}", "inverse": False}))
 
     def _modifier(self, name):
         dice = self.dice
@@ -183,7 +202,7 @@ class Things:
         """The first thing again, by a collection or on the corners or faces of another mesh."""
         dice = self.dice
         if dice.chance(0.5):
-            fields = {"objects": ["@Thing 1"], "only": dice.chance(0.3)}
+            fields = {"objects": ["@Thing 1", *(["@Lamp 1 object"] if dice.chance(0.3) else [])], "only": dice.chance(0.3)}
             self.records.append(Record("collection", "Copies", fields))
             for number in range(dice.whole(1, 2)):
                 place = {

@@ -1,0 +1,95 @@
+"""Random node trees of worlds and lamps."""
+
+import math
+
+from .record import Record
+
+_RAYS = ("camera", "diffuse", "glossy", "transmission")
+_KINDS_OF_RAYS = ("Is Camera Ray", "Is Diffuse Ray", "Is Glossy Ray", "Is Transmission Ray", "Is Reflection Ray")
+
+
+def world(dice, is_lit):
+    """The record of a world; None now and then, where lamps give light."""
+    if is_lit and dice.chance(0.25):
+        return None
+    fields = {}
+    hidden = dice.some(_RAYS, 0.05)
+    if hidden:
+        fields["hidden_from"] = hidden
+    if dice.chance(0.2):
+        fields["mist"] = {
+            "start": dice.number(1.0, 4.0),
+            "depth": dice.number(2.0, 6.0),
+            "falloff": dice.pick(("LINEAR", "QUADRATIC", "INVERSE_QUADRATIC")),
+        }
+    if dice.chance(0.1):
+        fields["occlusion_distance"] = dice.number(0.3, 3.0)
+    if dice.chance(0.1):
+        fields["map_resolution"] = dice.pick((4, 16, 128))
+    return Record("world", "World", fields)
+
+
+def world_tree(trees, tree, image=None):
+    """A background of one colour, of a picture or of computed nodes; now and then another one for some kinds of rays."""
+    dice = trees.dice
+    shader = _background(trees, tree, image)
+    if dice.chance(0.2):
+        kind = dice.pick(("ShaderNodeMixShader", "ShaderNodeMixShader", "ShaderNodeAddShader"))
+        inputs = {"Shader": shader, "Shader_001": _background(trees, tree, None)}
+        if kind == "ShaderNodeMixShader":
+            inputs["Fac"] = dice.number()
+            if dice.chance(0.6):
+                inputs["Fac"] = [trees.write(tree, "ShaderNodeLightPath", {}, {}), dice.pick(_KINDS_OF_RAYS)]
+        shader = [trees.write(tree, kind, {}, inputs), "Shader"]
+    trees.write(tree, "ShaderNodeOutputWorld", {}, {"Surface": shader})
+
+
+def _background(trees, tree, image):
+    dice = trees.dice
+    color = dice.color(0.2, 0.9)
+    if image is not None:
+        color = [_picture(trees, tree, image), "Color"]
+    elif dice.chance(0.2):
+        trees.budget = 5
+        # No sky is darker than black.
+        inputs = {"Vector": trees.value(tree, "c", 1)}
+        color = [trees.write(tree, "ShaderNodeVectorMath", {"operation": "ABSOLUTE"}, inputs), "Vector"]
+    inputs = {"Color": color, "Strength": dice.number(0.2, 1.2)}
+    if dice.chance(0.05):
+        return [trees.write(tree, "ShaderNodeEmission", {}, inputs), "Emission"]
+    return [trees.write(tree, "ShaderNodeBackground", {}, inputs), "Background"]
+
+
+def _picture(trees, tree, image):
+    dice = trees.dice
+    props = {
+        "image": f"@{image}",
+        "projection": dice.pick(("EQUIRECTANGULAR", "EQUIRECTANGULAR", "MIRROR_BALL")),
+        "interpolation": dice.pick(("Linear", "Linear", "Closest", "Cubic")),
+    }
+    inputs = {}
+    if dice.chance(0.6):
+        place = trees.write(tree, "ShaderNodeTexCoord", {}, {})
+        turned = {"Vector": [place, "Generated"], "Rotation": dice.vector(-math.pi, math.pi)}
+        if dice.chance(0.3):
+            turned["Scale"] = dice.vector(0.5, 2.0)
+        inputs = {"Vector": [trees.write(tree, "ShaderNodeMapping", {}, turned), "Vector"]}
+    return trees.write(tree, "ShaderNodeTexEnvironment", props, inputs)
+
+
+def lamp_tree(trees, tree):
+    """Constant light: colours and numbers that no place or direction changes."""
+    dice = trees.dice
+    color, strength = dice.color(0.2, 1.0), dice.number(0.2, 2.0)
+    if dice.chance(0.5):
+        warm = trees.write(tree, "ShaderNodeBlackbody", {}, {"Temperature": dice.number(2000.0, 9000.0)})
+        color = [warm, "Color"]
+    if dice.chance(0.2):
+        strength = [
+            trees.write(
+                tree, "ShaderNodeMath", {"operation": dice.pick(("MULTIPLY", "ADD"))}, {"Value": strength, "Value_001": 0.5}
+            ),
+            "Value",
+        ]
+    emission = trees.write(tree, "ShaderNodeEmission", {}, {"Color": color, "Strength": strength})
+    trees.write(tree, "ShaderNodeOutputLight", {}, {"Surface": [emission, "Emission"]})

@@ -1,0 +1,101 @@
+"""One scene by both engines, in rounds that double the samples until the scene is decided: equal, different, or too noisy."""
+
+import numpy as np
+
+from scenes.parity import figures
+from tools.parity import contest
+
+from . import data_passes
+
+# A pass of light is judged against at least this share of the level of Combined, which it adds to.
+_LEAST_SHARE = 0.2
+# The most that noise may add to a limit, in limits: a fault of three times the limit is found.
+_MOST_ADDED = 2.0
+# Samples of a scene that noise may have taken beyond its limits, in those of a scene within them.
+_MORE_IN_NOISE = 8
+
+
+def run(case, folder, most_samples, first_seed):
+    """Return the contest.Outcome of a case; most_samples: of each half of each engine, where noise decides nothing."""
+    outcome = contest.Outcome(case)
+    try:
+        _render(case, outcome, folder, most_samples, first_seed)
+    except Exception as error:
+        first_line = next(iter(str(error).splitlines()), "")
+        outcome.verdict, outcome.note = "error", f"{type(error).__name__}: {first_line}"
+    return outcome
+
+
+def _render(case, outcome, folder, most_samples, first_seed):
+    scene = contest.open_empty()
+    case.build(scene)
+    engines = [contest.Halves("LANCER"), contest.Halves("CYCLES")]
+    samples, seed = min(case.samples, most_samples), first_seed
+    while True:
+        for halves in engines:
+            halves.add(scene, case, samples, seed, folder)
+        outcome.samples += 2 * samples
+        outcome.seconds = {halves.engine: halves.seconds for halves in engines}
+        ours, theirs = (halves.pictures for halves in engines)
+        _refuse_unlike(case, ours, theirs)
+        if not case.kind.averages:
+            _judge_data(case, outcome, scene, ours, theirs)
+            return
+        _judge_light(case, outcome, ours, theirs)
+        if _is_settled(case, outcome, 2 * most_samples):
+            return
+        # The next round doubles the samples.
+        samples, seed = outcome.samples // 2, seed + 2
+
+
+def _refuse_unlike(case, ours, theirs):
+    missing = set(case.passes) - set(theirs)
+    if missing:
+        raise ValueError(f"Cycles wrote no pass {', '.join(sorted(missing))}")
+    for name, (half, _) in theirs.items():
+        if name not in ours:
+            raise ValueError(f"Lancer wrote no pass {name}")
+        if ours[name][0].shape != half.shape:
+            raise ValueError(f"{name}: Lancer's picture is {ours[name][0].shape}, Cycles' is {half.shape}")
+
+
+def _judge_data(case, outcome, scene, ours, theirs):
+    camera = np.array(scene.camera.matrix_world.translation)
+    found = {name: data_passes.differs(ours[name], theirs[name], camera if name == "Position" else None) for name in theirs}
+    outcome.verdict = "fail" if any(found.values()) else "pass"
+    outcome.note = "; ".join(f"{name}: {text}" for name, text in found.items() if text)
+
+
+def _judge_light(case, outcome, ours, theirs):
+    level = float(np.mean(np.abs(theirs["Combined"]))) if "Combined" in theirs else 0.0
+    for name, pair in theirs.items():
+        least = 0.0 if name in ("Combined", "Alpha") else _LEAST_SHARE * level
+        numbers = figures.measure(ours[name], pair, case.kind)
+        if numbers.level < least:
+            numbers = figures.measure(ours[name], pair, case.kind, np.full((1, 1, 1), least))
+        elif numbers.dim and numbers.dim.level < least:
+            numbers = numbers._replace(dim=None)
+        outcome.parts[name] = numbers, figures.judge(numbers, case.limits)
+    names = [verdict.name for _, verdict in outcome.parts.values()]
+    outcome.verdict = next(name for name in figures.WORST_FIRST if name in names)
+
+
+def _is_settled(case, outcome, most_samples):
+    """Whether more samples change nothing, or are too many; the verdict of a scene in noise becomes final."""
+    every = [n for numbers, _ in outcome.parts.values() for n in (numbers, numbers.dim) if n]
+    limit = case.limits
+    if any(figures.hopeless(numbers, limit) for numbers in every):
+        return True
+    if outcome.verdict == "pass" and all(figures.enough(numbers, limit) for numbers in every):
+        return True
+    if outcome.verdict in ("pass", "fail"):
+        return outcome.samples >= most_samples
+    added = max(max(more.mean / limit.mean, more.p99 / limit.p99) for more in map(figures.allowance, every))
+    if added <= _MOST_ADDED:
+        outcome.verdict, outcome.note = "pass", f"noise adds up to {added:.2f} limits"
+        return True
+    if outcome.samples < most_samples:
+        return False
+    # Four times the samples halve the noise.
+    most_samples *= _MORE_IN_NOISE
+    return outcome.samples >= most_samples or added * (outcome.samples / most_samples) ** 0.5 > _MOST_ADDED
