@@ -48,6 +48,7 @@ def export_light(thing, matrix_world, messages, depsgraph=None, hidden=None):
         return None
     if text := describe_shear(kind, matrix, depsgraph):
         messages.add(f"{who}: {text}")
+    _check_layers(kind, radius, who, messages, depsgraph)
     # Only constant light is supported: read no images.
     graph = NodeGraph(who, messages, NoPictures(), depsgraph, unknown="white")
     own = light.lancer
@@ -75,6 +76,18 @@ def export_light(thing, matrix_world, messages, depsgraph=None, hidden=None):
         diffuse_color=messages.color(own.diffuse_color, who, "diffuse colour", 1.0) if separate else (1.0, 1.0, 1.0),
         specular_color=messages.color(own.specular_color, who, "specular colour", 1.0) if separate else (1.0, 1.0, 1.0),
     )
+
+
+def _check_layers(kind, radius, who, messages, depsgraph):
+    """Report that Cycles counts a lamp that a path meets as a transparent surface, where the first one ends the path."""
+    if depsgraph is None or kind == LightKind.SUN or (kind != LightKind.AREA and radius == 0.0):
+        return
+    bounces = depsgraph.scene.lancer.transparent_bounces
+    if bounces + (bpy.app.version < (5, 0)) <= 1:
+        messages.add(
+            f"{who}: with at most {bounces} transparent bounces Cycles ends paths at lamps, here they continue behind them",
+            "feature:lamps that end paths",
+        )
 
 
 def _ambient(own, who, messages):

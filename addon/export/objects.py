@@ -93,7 +93,7 @@ class Objects:
             self._checked.add(original_key)
             check_object(owner, self.scene, self.messages)
         sight = self.sight(thing, narrowed)
-        materials = [slot.material for slot in thing.material_slots]
+        materials = _slot_materials(thing)
         slots = tuple([self.materials.number(material, name) for material in materials or list(thing.data.materials) or [None]])
         own = owner.lancer
         kind = InstanceKind[own.shape]
@@ -197,6 +197,21 @@ def _has_special_collections(view_layer):
             return True
         waiting.extend(collection.children)
     return False
+
+
+def _slot_materials(thing):
+    """Return the materials of an object's slots, None for empty ones.
+
+    An empty slot of the object's own shows the material of its mesh; since 5.2, Cycles leaves it empty.
+    """
+    slots = thing.material_slots
+    if bpy.app.version < (5, 2):
+        return [slot.material for slot in slots]
+    originals = thing.original.material_slots
+    return [
+        None if slot.link == "OBJECT" and index < len(originals) and originals[index].material is None else slot.material
+        for index, slot in enumerate(slots)
+    ]
 
 
 def _terminator(thing):

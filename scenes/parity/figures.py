@@ -51,6 +51,13 @@ class Figures(NamedTuple):
     noise_p99: float
     sigma: float  # standard deviation of a block's noise
     level: float  # the divisor of differences: the mean of Cycles' picture
+    # The figures of the part of each difference that both halves show, which a single bright sample does not reach.
+    sure_mean: float
+    sure_p99: float
+    # The figures of the standard deviations of blocks by the noise of their pixels: a picture with few lit blocks has more of
+    # those.
+    spread_mean: float = 0.0
+    spread_p99: float = 0.0
     # The same figures with each block relative to its own level, or to a common level where the block is darker; bright parts
     # do not raise that level.
     dim: "Figures | None" = None
@@ -82,9 +89,10 @@ def measure(ours, theirs, kind, scale=None):
     shapes = {half.shape for half in (*ours, *theirs)}
     if len(shapes) != 1:
         raise ValueError(f"the pictures have different shapes: {sorted(shapes)}")
-    ours, theirs = ([blocks(half, kind.block) for half in pair] for pair in (ours, theirs))
     if not all(np.isfinite(half).all() for half in (*ours, *theirs)):
         return _HOPELESS
+    spread = _spread(ours, theirs, kind.block) if kind.averages else None
+    ours, theirs = ([blocks(half, kind.block) for half in pair] for pair in (ours, theirs))
     if not kind.averages:
         seen = _seen(ours, theirs)
         if seen is None:
@@ -99,16 +107,24 @@ def measure(ours, theirs, kind, scale=None):
     noise = ((ours[0] - ours[1]) - (theirs[0] - theirs[1])) / 2
     even = np.full_like(reference, level)
     if scale is not None:
-        return _figures(difference, noise, scale, level)
+        return _figures(difference, noise, scale, level, spread)
     if kind.relative:
-        return _figures(difference, noise, reference, level)
+        return _figures(difference, noise, reference, level, spread)
     if not kind.averages:
         return _figures(difference, noise, even, level)
     dim = _dim_level(reference)
-    return _figures(difference, noise, even, level)._replace(dim=_figures(difference, noise, np.maximum(reference, dim), dim))
+    figures = _figures(difference, noise, even, level, spread)
+    return figures._replace(dim=_figures(difference, noise, np.maximum(reference, dim), dim, spread))
 
 
-_HOPELESS = Figures(math.inf, math.inf, 0.0, 0.0, 0.0, math.nan)
+def _spread(ours, theirs, size):
+    """Returns the standard deviations of the blocks' noise, with that of their pixels as independent values."""
+    noise = ((ours[0] - ours[1]) - (theirs[0] - theirs[1])) / 2
+    rows, columns = (np.diff(np.append(np.arange(0, length, size), length)) for length in noise.shape[:2])
+    return np.sqrt(blocks(noise**2, size) / np.outer(rows, columns)[..., None])
+
+
+_HOPELESS = Figures(math.inf, math.inf, 0.0, 0.0, 0.0, math.nan, math.inf, math.inf)
 
 
 def _dim_level(reference):
@@ -135,9 +151,13 @@ def _shows(picture):
     return (picture != 0.0) & (np.abs(picture) < _NOWHERE)
 
 
-def _figures(difference, noise, scale, level):
+def _figures(difference, noise, scale, level, spread=None):
     ratio = _ratio(noise, scale)
-    return Figures(*_sizes(_ratio(difference, scale)), *_sizes(ratio), _root_mean_square(ratio), level)
+    # The halves differ by difference + noise and difference - noise: the smaller of the two, and 0 if their signs differ.
+    sure = np.maximum(np.abs(difference) - np.abs(noise), 0.0)
+    sizes = (*_sizes(_ratio(difference, scale)), *_sizes(ratio), _root_mean_square(ratio), level)
+    spread = (0.0, 0.0) if spread is None else _sizes(_ratio(spread, scale))
+    return Figures(*sizes, *_sizes(_ratio(sure, scale)), *spread)
 
 
 def _root_mean_square(ratio):
@@ -164,9 +184,11 @@ def allowance(figures):
     """Returns the amount that noise may add to each figure.
 
     The mean of |d + n| is at most mean |d| + mean |n|, and the measured mean |n| averages a hundred values or more, so two
-    measurements of it agree within half of its value. The 99th percentile depends on the noise of few blocks: 4 standard
-    deviations, or, where that noise has long tails, twice the measured tail."""
-    return Limit(1.5 * figures.noise_mean, max(4.0 * figures.sigma, 2.0 * figures.noise_p99))
+    measurements of it agree within half of its value; of few lit blocks it is 0.8 of the deviation that their pixels show. The
+    99th percentile depends on the noise of few blocks: 4 standard deviations, or, where that noise has long tails, twice the
+    measured tail."""
+    mean = max(figures.noise_mean, 0.8 * figures.spread_mean)
+    return Limit(1.5 * mean, max(4.0 * figures.sigma, 2.0 * figures.noise_p99, 4.0 * figures.spread_p99))
 
 
 def judge(figures, limit):
@@ -182,7 +204,13 @@ def _judge(figures, limit):
     if figures.mean <= limit.mean and figures.p99 <= limit.p99:
         return Verdict("pass", quiet or (figures.mean + more.mean <= limit.mean and figures.p99 + more.p99 <= limit.p99))
     within = figures.mean <= limit.mean + more.mean and figures.p99 <= limit.p99 + more.p99
-    return Verdict("noise" if within else "fail", quiet)
+    return Verdict("noise" if within or not _is_sure(figures, limit) else "fail", quiet)
+
+
+def _is_sure(figures, limit):
+    """Whether both halves show a difference beyond the limit. The tail of Monte Carlo noise, one bright sample in a dark block,
+    is longer than any multiple of a measured deviation; it is in one of the halves."""
+    return figures.sure_mean > limit.mean or figures.sure_p99 > limit.p99
 
 
 def share(figures, limit):
@@ -205,4 +233,5 @@ def enough(figures, limit):
 def hopeless(figures, limit):
     """Whether more samples cannot change the verdict: the figures are far beyond the limit, or far beyond the noise."""
     more = allowance(figures)
-    return figures.mean > limit.mean + 3.0 * more.mean or figures.p99 > limit.p99 + 3.0 * more.p99
+    far = figures.mean > limit.mean + 3.0 * more.mean or figures.p99 > limit.p99 + 3.0 * more.p99
+    return far and _is_sure(figures, limit)

@@ -37,11 +37,12 @@ class Hunt:
                 worker.process.stdin.close()
             return worker.process.wait(timeout=60)
 
-    def judge(self, records, most_samples=None, first_seed=1):
+    def judge(self, records, most_samples=None, first_seed=1, hasty=True):
         """The answer of judge.judge, or {"verdict": crash, timeout or memory, "text"}."""
         if self._worker is None:
             self._worker = self._start()
         request = {"scene": to_json(records), "most_samples": most_samples or self.most_samples, "first_seed": first_seed}
+        request["hasty"] = hasty
         try:
             return self._worker.ask("judge", self.seconds, self.bytes, **request)
         except Ended as ended:
@@ -50,10 +51,12 @@ class Hunt:
             return {"verdict": ended.kind, "text": str(ended), "told": [], "seconds": self.seconds}
 
     def verdict(self, records):
-        """pass, noise, told or a fault: the answer, judged twice where it is none."""
+        """pass, noise, told or a fault: the answer, judged twice where it is none.
+
+        The second time a picture of few lit blocks, whose noise few samples measure badly, gets all its samples."""
         answer = self.judge(records)
         if answer["verdict"] in FAULTS:
-            answer = self.judge(records, _MORE * self.most_samples, _SECOND_SEED)
+            answer = self.judge(records, _MORE * self.most_samples, _SECOND_SEED, hasty=bool(answer["told"]))
         if answer["verdict"] == "fail" and answer["told"]:
             silent = self._beside_told(records, answer)
             answer = silent or {**answer, "verdict": "told"}
@@ -83,10 +86,10 @@ class Hunt:
         """(The smallest scene with a fault of that kind, its answer)."""
         verdict, smallest = answer["verdict"], [answer]
         # As many samples as have shown the fault do so again; most candidates show it at once or never.
-        most_samples = max(32, answer.get("samples", 0) // 2)
+        most_samples = min(max(32, answer.get("samples", 0) // 2), 2 * self.most_samples)
 
         def fails(candidate):
-            found = self.judge(candidate, most_samples, _SECOND_SEED)
+            found = self.judge(candidate, most_samples, _SECOND_SEED, hasty=False)
             if found["verdict"] != verdict or found["told"] or found.get("pass") != answer.get("pass"):
                 return False
             if found.get("share", 1.0) < min(answer.get("share", 1.0), _MOST_SHARE) * _LEAST_SHARE:

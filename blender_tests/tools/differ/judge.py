@@ -11,6 +11,8 @@ from . import rounds
 from .builder import build
 
 _SAMPLES = 32  # of each half of each engine, at first
+# A picture darker than this has no pixel that a screen shows: the first step of 8 bits is at 3e-4.
+_DARK = 1e-5
 
 
 def make_case(records):
@@ -34,14 +36,14 @@ def _build(scene, records):
     build(scene, records)
 
 
-def judge(records, folder, most_samples, first_seed=1):
+def judge(records, folder, most_samples, first_seed=1, hasty=True):
     """{"verdict": pass, fail, noise or error; "note"; "figures": of the worst pass; "told": messages of another picture}"""
     started = time.perf_counter()
     results.last_messages.clear()
     case = make_case(records)
-    outcome = rounds.run(case, folder, most_samples, first_seed)
+    outcome = rounds.run(case, folder, most_samples, first_seed, hasty)
     answer = {
-        "verdict": outcome.verdict,
+        "verdict": "pass" if _is_dark(outcome) else outcome.verdict,
         "note": outcome.note,
         "samples": outcome.samples,
         "told": _told(),
@@ -56,6 +58,11 @@ def judge(records, folder, most_samples, first_seed=1):
     else:
         answer["text"] = outcome.note or f"equal: {', '.join(case.passes)}"
     return {**answer, "seconds": time.perf_counter() - started}
+
+
+def _is_dark(outcome):
+    numbers = outcome.parts[outcome.worst][0] if outcome.worst else None
+    return numbers is not None and outcome.case.kind.averages and numbers.level < _DARK
 
 
 def _told():

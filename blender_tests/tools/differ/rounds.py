@@ -15,18 +15,20 @@ _MOST_ADDED = 2.0
 _MORE_IN_NOISE = 8
 
 
-def run(case, folder, most_samples, first_seed):
-    """Return the contest.Outcome of a case; most_samples: of each half of each engine, where noise decides nothing."""
+def run(case, folder, most_samples, first_seed, hasty):
+    """Return the contest.Outcome of a case; most_samples: of each half of each engine, where noise decides nothing.
+
+    hasty: a difference far beyond the noise of few samples is final."""
     outcome = contest.Outcome(case)
     try:
-        _render(case, outcome, folder, most_samples, first_seed)
+        _render(case, outcome, folder, most_samples, first_seed, hasty)
     except Exception as error:
         first_line = next(iter(str(error).splitlines()), "")
         outcome.verdict, outcome.note = "error", f"{type(error).__name__}: {first_line}"
     return outcome
 
 
-def _render(case, outcome, folder, most_samples, first_seed):
+def _render(case, outcome, folder, most_samples, first_seed, hasty):
     scene = contest.open_empty()
     case.build(scene)
     engines = [contest.Halves("LANCER"), contest.Halves("CYCLES")]
@@ -42,7 +44,7 @@ def _render(case, outcome, folder, most_samples, first_seed):
             _judge_data(case, outcome, scene, ours, theirs)
             return
         _judge_light(case, outcome, ours, theirs)
-        if _is_settled(case, outcome, 2 * most_samples):
+        if _is_settled(case, outcome, 2 * most_samples, hasty):
             return
         # The next round doubles the samples.
         samples, seed = outcome.samples // 2, seed + 2
@@ -80,11 +82,11 @@ def _judge_light(case, outcome, ours, theirs):
     outcome.verdict = next(name for name in figures.WORST_FIRST if name in names)
 
 
-def _is_settled(case, outcome, most_samples):
+def _is_settled(case, outcome, most_samples, hasty):
     """Whether more samples change nothing, or are too many; the verdict of a scene in noise becomes final."""
     every = [n for numbers, _ in outcome.parts.values() for n in (numbers, numbers.dim) if n]
     limit = case.limits
-    if any(figures.hopeless(numbers, limit) for numbers in every):
+    if hasty and any(figures.hopeless(numbers, limit) for numbers in every):
         return True
     if outcome.verdict == "pass" and all(figures.enough(numbers, limit) for numbers in every):
         return True

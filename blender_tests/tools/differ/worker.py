@@ -18,7 +18,7 @@ def serve(answers, folder):
     for line in sys.stdin:
         request = json.loads(line)
         try:
-            answer = judge(from_json(request["scene"]), folder, request["most_samples"], request["first_seed"])
+            answer = judge(from_json(request["scene"]), folder, request["most_samples"], request["first_seed"], request["hasty"])
         except Exception as error:
             lines = [text for text in str(error).splitlines() if text.strip()] or [""]
             answer = {"verdict": "error", "text": f"{type(error).__name__}: {lines[0][:300]}", "told": [], "seconds": 0.0}

@@ -193,14 +193,15 @@ void PathIntegrator::keep_vertices() {
     keep_vertex(paths_[waiting_[lane].number], surfaces_.surface(lane), surfaces_.hit(lane).t);
 }
 
-// Fills the passes of the surfaces that the camera sees.
+// Fills the passes of the surfaces that the camera sees. A surface that ends the path contributes only its emission, as in
+// Cycles.
 void PathIntegrator::record_surfaces() {
   uint32_t seen = 0, guiding = 0;
   for (uint32_t lane = 0; lane < surfaces_.count(); ++lane) {
     const Path &path = paths_[waiting_[lane].number];
     if (waiting_[lane].nothing)
       continue;
-    seen |= uint32_t(path.in_view) << lane;
+    seen |= uint32_t(path.in_view && !waiting_[lane].ends) << lane;
     guiding |= uint32_t(film_.wants_guides(path)) << lane;
   }
   if (!(seen | guiding))
@@ -210,7 +211,7 @@ void PathIntegrator::record_surfaces() {
     const uint32_t lane = uint32_t(std::countr_zero(rest));
     const Waiting &waiting = waiting_[lane];
     const Path &path = paths_[waiting.number];
-    block_.occlusion_asked |= uint32_t(passes_.occlusion() && !waiting.ends && path.scatterings == 0) << lane;
+    block_.occlusion_asked |= uint32_t(passes_.occlusion() && path.scatterings == 0) << lane;
     // In most cases, the position suffices.
     Surface surface;
     if (path.is_first(settings_.splits.paths) || passes_.uv())
