@@ -17,8 +17,9 @@ from .record import from_json
 def serve(answers, folder):
     for line in sys.stdin:
         request = json.loads(line)
+        records = from_json(request.pop("scene"))
         try:
-            answer = judge(from_json(request["scene"]), folder, request["most_samples"], request["first_seed"], request["hasty"])
+            answer = judge(records, folder, **request)
         except Exception as error:
             lines = [text for text in str(error).splitlines() if text.strip()] or [""]
             answer = {"verdict": "error", "text": f"{type(error).__name__}: {lines[0][:300]}", "told": [], "seconds": 0.0}
