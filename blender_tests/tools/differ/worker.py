@@ -18,6 +18,7 @@ def serve(answers, folder):
     for line in sys.stdin:
         request = json.loads(line)
         records = from_json(request.pop("scene"))
+        del request["task"]
         try:
             answer = judge(records, folder, **request)
         except Exception as error:
