@@ -65,6 +65,13 @@ def is_flattened(kind, matrix, depsgraph):
     return bool(flat[2]) and (kind == LightKind.SUN or kind == LightKind.AREA and _uses_light_tree(depsgraph))
 
 
+def shines_all_around(kind, matrix, radius, depsgraph):
+    """Whether a spot without a direction shines to all sides: since 4.0, but for a point that the light tree leaves out."""
+    flat = np.linalg.norm(matrix[:3, :3], axis=0) == 0.0
+    is_kept = radius > 0.0 or not _uses_light_tree(depsgraph)
+    return kind == LightKind.SPOT and bpy.app.version >= (4, 0) and flat.tolist() == [False, False, True] and is_kept
+
+
 def describe_shear(kind, matrix, depsgraph):
     """Return the words for a message where Cycles contradicts itself about a sheared lamp; "" elsewhere."""
     if kind == LightKind.AREA and not np.linalg.norm(matrix[:3, 2]) > 0.0:

@@ -12,7 +12,7 @@ from ..messages.severity import Severity
 from .checks import check_linking
 from .graph import NodeGraph
 from .images import NoPictures
-from .lamp_transforms import area_of, axes_of, cone_stretch, describe_shear, is_flattened
+from .lamp_transforms import area_of, axes_of, cone_stretch, describe_shear, is_flattened, shines_all_around
 from .surface import emission_of
 from .visibility import object_hidden_from
 
@@ -35,6 +35,9 @@ def export_light(thing, matrix_world, messages, depsgraph=None, hidden=None):
     radius = messages.number(getattr(light, "shadow_soft_size", 0.0), who, "radius", 0.0, 0.0)
     sun_angle = messages.number(getattr(light, "angle", 0.0), who, "angle", 0.0, 0.0, math.pi)
     shape, size = AreaShape.RECTANGLE, (1.0, 1.0)
+    if shines_all_around(kind, matrix, radius, depsgraph):
+        messages.add(f"{who}: its transform flattens it, as in Cycles it shines to all sides", severity=Severity.HINT)
+        kind = LightKind.POINT
     if kind == LightKind.AREA:
         shape, size = _area(light, matrix, who, messages)
     elif kind == LightKind.SPOT:
@@ -44,6 +47,9 @@ def export_light(thing, matrix_world, messages, depsgraph=None, hidden=None):
         messages.add(f"{who}: its area is zero, it is left out", severity=Severity.LEFT_OUT)
         return None
     if is_flattened(kind, matrix, depsgraph):
+        if kind == LightKind.SUN and sun_angle > 0.0 and bpy.app.version >= (5, 0):
+            messages.add(f"{who}: its transform flattens it, Cycles shows a sun of arbitrary direction, here it gives no light")
+            return None
         messages.add(f"{who}: its transform flattens it, as in Cycles it gives no light", severity=Severity.HINT)
         return None
     if text := describe_shear(kind, matrix, depsgraph):

@@ -96,13 +96,20 @@ def light_flattened(scene, kind):
     """Beside a sun, a lamp that is scaled to 0 along each axis in turn; the tree of lights is off, as in all these scenes."""
     _spot(scene)
     parts.add_light(scene, "Base", "SUN", 1.0, (0.5, 0.5, 3.0), angle=0.0)
-    # Without the tree a spot that is flat along z shines to all sides, with it to none.
+    # A spot that is flat along z shines to all sides; see light_flat_spot.
     for axis in range(2 if kind == "SPOT" else 3):
         energy = 1.0 if kind == "SUN" else 50.0
         lamp = parts.add_light(scene, f"Light {axis}", kind, energy, (1.2, -0.8, 2.5 + 0.1 * axis))
         if kind in ("POINT", "SPOT"):
             lamp.data.shadow_soft_size = 0.0
         lamp.scale = [0.0 if axis == other else 1.5 for other in range(3)]
+
+
+@variants("LIGHT", since=(4, 0), values={"ball": 0.3, "point": 0.0}, **_FIELDS)
+def light_flat_spot(scene, radius):
+    """A spot without a direction shines to all sides; one that is a point does so without the tree of lights alone."""
+    lamp = _lamp(scene, "SPOT", (0.7, 1.3, 0.0), shadow_soft_size=radius).data
+    lamp.spot_size, lamp.spot_blend = 0.6, 0.5
 
 
 _KINDS = {

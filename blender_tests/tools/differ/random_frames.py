@@ -21,7 +21,7 @@ def frame(dice):
     film, layer = {}, {}
     frame = {
         "size": [48, 32],
-        "bounces": dice.pick({0: 3, 1: 5, 2: 2, 3: 0.5}),
+        "bounces": dice.pick({0: 4, 1: 5, 2: 1, 3: 0.3}),
         "transparent_bounces": dice.pick((8, 8, 8, 1, 0)),
     }
     is_data = dice.chance(0.15)

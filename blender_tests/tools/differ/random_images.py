@@ -25,4 +25,4 @@ def image(dice, number):
 def sky(dice):
     """A smooth picture, with a small sun now and then."""
     fields = {"format": dice.pick(("FLOAT", "FLOAT", "OPEN_EXR", "BYTE")), "size": [16, 8], "space": "Linear"}
-    return Record("image", "Sky", {**fields, "seed": dice.whole(0, 99), "peak": dice.pick((1.0, 1.0, 1.0, 8.0))})
+    return Record("image", "Sky", {**fields, "seed": dice.whole(0, 99), "peak": dice.pick((1.0, 1.0, 1.0, 4.0))})

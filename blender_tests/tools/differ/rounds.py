@@ -11,6 +11,8 @@ from . import data_passes
 _LEAST_SHARE = 0.2
 # The most that noise may add to a limit, in limits: a fault of three times the limit is found.
 _MOST_ADDED = 2.0
+# No distance in a scene is larger.
+_FAR = 1e9
 # Samples of a scene that noise may have taken beyond its limits, in those of a scene within them.
 _MORE_IN_NOISE = 8
 
@@ -68,13 +70,20 @@ def _judge_data(case, outcome, scene, ours, theirs):
     outcome.note = "; ".join(f"{name}: {text}" for name, text in found.items() if text)
 
 
+def _near(ours, theirs):
+    """Return two pictures of depth, each two halves, with 0 where any shows the background, which has no depth of its own."""
+    far = np.any([half > _FAR for half in (*ours, *theirs)], axis=0)
+    return tuple(tuple(np.where(far, 0.0, half) for half in pair) for pair in (ours, theirs))
+
+
 def _judge_light(case, outcome, ours, theirs):
     level = float(np.mean(np.abs(theirs["Combined"]))) if "Combined" in theirs else 0.0
     for name, pair in theirs.items():
+        one, other = (ours[name], pair) if name != "Denoising Depth" else _near(ours[name], pair)
         least = 0.0 if name in ("Combined", "Alpha") else _LEAST_SHARE * level
-        numbers = figures.measure(ours[name], pair, case.kind)
+        numbers = figures.measure(one, other, case.kind)
         if numbers.level < least:
-            numbers = figures.measure(ours[name], pair, case.kind, np.full((1, 1, 1), least))
+            numbers = figures.measure(one, other, case.kind, np.full((1, 1, 1), least))
         elif numbers.dim and numbers.dim.level < least:
             numbers = numbers._replace(dim=None)
         outcome.parts[name] = numbers, figures.judge(numbers, case.limits)
