@@ -5,7 +5,7 @@ Generated from core/include/lancer.h by `make bindings`; changes here are lost.
 
 from enum import IntEnum, IntFlag
 
-ABI_VERSION = 5
+ABI_VERSION = 6
 
 
 class Status(IntEnum):
@@ -166,6 +166,7 @@ class ObjectFact(IntEnum):
     COLOR = 1
     INDEX = 2
     RANDOM = 3
+    ATTRIBUTE = 4
 
 
 class PathFact(IntEnum):

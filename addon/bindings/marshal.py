@@ -106,6 +106,11 @@ def instances(table):
     return len(rows), pointer, len(table.slots), _address(table.slots), names, len(names)
 
 
+def object_attribute(attribute):
+    """Return the arguments of lancer_scene_add_object_attribute after the scene."""
+    return _text(attribute.name), len(attribute.values), _address(attribute.values)
+
+
 _TEXELS = {
     np.dtype(np.uint8): abi.TexelKind.U8,
     np.dtype(np.uint16): abi.TexelKind.U16,

@@ -184,6 +184,8 @@ class Scene(_Handle, SceneProbes):
             if snapshot.instances.infos is not None:
                 infos = snapshot.instances.infos
                 self._check(library.lancer_scene_set_object_infos(handle, len(infos), infos.ctypes.data))
+            for attribute in snapshot.instances.attributes:
+                self._check(library.lancer_scene_add_object_attribute(handle, *marshal.object_attribute(attribute)))
             yield
         if release:
             snapshot.set("instances", InstanceTable())

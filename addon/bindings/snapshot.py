@@ -108,6 +108,18 @@ class Instance:
     terminator: float = 0.0  # cosine; 0 = shadow rays start on the triangle
 
 
+@register
+@dataclass(frozen=True, eq=False)
+class ObjectAttribute(Record):
+    """values: (instances, 4), for OBJECT_INFO nodes with this name."""
+
+    name: str = ""
+    values: np.ndarray = field(default_factory=lambda: np.empty((0, 4), np.float32))
+
+    def __post_init__(self):
+        self.set("values", array(self.values, np.float32, (None, 4), f"object attribute '{self.name}'"))
+
+
 _INSTANCE_COLUMNS = (
     "kinds", "meshes", "first_slots", "slot_counts", "object_indices", "shadings", "name_indices", "hidden_from", "flags",
 )  # fmt: skip
@@ -130,6 +142,7 @@ class InstanceTable(Record):
     flags: np.ndarray | None = None
     terminators: np.ndarray | None = None  # float
     infos: np.ndarray | None = None  # (n, 5): colour, alpha and random number for OBJECT_INFO; None: white and 0
+    attributes: tuple[ObjectAttribute, ...] = ()
     names: tuple[str, ...] = ()
     slots: np.ndarray = field(default_factory=lambda: np.empty(0, np.uint32))
 
@@ -148,6 +161,10 @@ class InstanceTable(Record):
             self.set(name, array(getattr(self, name), np.uint32, (count,), name))
         self.set("slots", array(self.slots, np.uint32, (None,), "slots"))
         self.set("names", tuple(self.names))
+        self.set("attributes", tuple(self.attributes))
+        for attribute in self.attributes:
+            if len(attribute.values) != count:
+                raise ValueError(f"object attribute '{attribute.name}' has {len(attribute.values)} rows for {count} instances")
         if count and int(self.name_indices.max()) >= len(self.names):
             raise ValueError(f"name index {int(self.name_indices.max())} >= {len(self.names)} names")
 

@@ -16,7 +16,7 @@ POLYGONS = "polygons:"
 RENDER_COLOR = "render color:"
 _DOMAINS = {"POINT": Domain.VERTEX, "EDGE": Domain.VERTEX, "FACE": Domain.FACE, "CORNER": Domain.CORNER}
 # The attribute types that Cycles reads: the field that holds a value, the type of its numbers, and how many of them are used.
-_TYPES = {
+TYPES = {
     "FLOAT": ("value", np.float32, 1),
     "INT": ("value", np.int32, 1),
     "BOOLEAN": ("value", bool, 1),
@@ -30,7 +30,7 @@ _TYPES = {
 # Since 5.0 a triangle across the seam of the spherical map is not stretched over all of it.
 _JOINS_SEAM = bpy.app.version >= (5, 0)
 if bpy.app.version >= (4, 1):
-    _TYPES["INT8"] = ("value", np.int32, 1)
+    TYPES["INT8"] = ("value", np.int32, 1)
 
 
 def attribute_name(name):
@@ -183,9 +183,9 @@ def color_attribute(mesh):
 
 
 def _values(mesh, attribute):
-    if attribute is None or attribute.data_type not in _TYPES or attribute.domain not in _DOMAINS or not len(attribute.data):
+    if attribute is None or attribute.data_type not in TYPES or attribute.domain not in _DOMAINS or not len(attribute.data):
         return None
-    field, dtype, width = _TYPES[attribute.data_type]
+    field, dtype, width = TYPES[attribute.data_type]
     values = np.empty(len(attribute.data) * width, dtype)
     attribute.data.foreach_get(field, values)
     values = values.reshape(-1, width)

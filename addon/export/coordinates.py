@@ -10,6 +10,8 @@ from ..host.by_scene import identity
 from .arithmetic import THIRDS, divide
 from .attributes import RENDER_COLOR, attribute_name, tangents_name
 from .maths import transformed
+from .object_attributes import PREFIXES
+from .properties import view_layer_value
 
 _RADIAL = {"X": 0, "Y": 1, "Z": 2}
 _ALONG_U = 3
@@ -106,7 +108,9 @@ def _named(graph, name, flags=0):
 def _attribute(graph, site, output):
     node = site.node
     name, is_alpha = node.attribute_name, output.identifier == "Alpha"
-    if getattr(node, "attribute_type", "GEOMETRY") != "GEOMETRY" or not name:
+    if node.attribute_type != "GEOMETRY":
+        return _property(graph, node, output)
+    if not name:
         return None
     if name in _UNREAD or name.endswith(_TANGENTS):
         return None
@@ -120,6 +124,25 @@ def _attribute(graph, site, output):
         return graph.component(value, 0) if is_number else value
     value = _named(graph, "" if name == "vertex_color" else name, AttributeFlag.FIRST if is_number else 0)
     return graph.vector_op(VectorOperation.DOT_PRODUCT, value, THIRDS) if is_number else value
+
+
+def _property(graph, node, output):
+    """Return a property of an object, an instancer or the view layer. The last, and all of a lamp, are constants."""
+    kind, name = node.attribute_type, node.attribute_name
+    found = None
+    if kind == "VIEW_LAYER":
+        graph.reads_layer = True
+        found = (0.0,) * 4 if graph.depsgraph is None else view_layer_value(graph.depsgraph, name)
+    elif graph.lamp_value is not None:
+        found = graph.lamp_value(PREFIXES[kind] + name)
+    if found is not None:
+        value, alpha = found[:3], found[3]
+    else:
+        value = graph.emit(NodeKind.OBJECT_INFO, option=ObjectFact.ATTRIBUTE, name=PREFIXES[kind] + name)
+        alpha = graph.emit(NodeKind.ALPHA, value)
+    if output.identifier == "Alpha":
+        return alpha
+    return graph.vector_op(VectorOperation.DOT_PRODUCT, value, THIRDS) if output.identifier == "Fac" else value
 
 
 def _vertex_color(graph, site, output):

@@ -1,5 +1,6 @@
 """All visible entries of the depsgraph: each mesh once, a table of instances, and the lights."""
 
+import functools
 from array import array
 from typing import NamedTuple
 
@@ -12,6 +13,7 @@ from .apart import read_infos
 from .checks import check_hair
 from .flat import report_flat
 from .lights import export_light
+from .object_attributes import AttributeReader, read_object_attributes
 from .objects import Objects
 
 # Types whose surface is a separate MESH entry of the depsgraph.
@@ -67,6 +69,7 @@ class Instances:
         self.messages = messages
         self.lights = []
         self._space = space
+        self._reader = AttributeReader(depsgraph, messages)
         self._objects = Objects(depsgraph, materials, messages, kept, parts)
         self._rows = {}
         self._narrowed = {}
@@ -146,6 +149,7 @@ class Instances:
         if any(self._objects.materials.tell_apart(look.slots) for look in looks):
             infos = read_infos(self.depsgraph.object_instances, entries, _POLL_EVERY, poll)
         table = InstanceTable(
+            attributes=self._attributes(look_of, entries, poll),
             matrices=matrices,
             kinds=column([look.kind for look in looks]),
             meshes=column([look.mesh for look in looks]),
@@ -163,6 +167,13 @@ class Instances:
         )
         report_flat(table, self.meshes, self.messages)
         return table
+
+    def _attributes(self, look_of, entries, poll):
+        names = [self._objects.materials.object_attributes(look.slots) for look in self._objects.looks]
+        if not any(names):
+            return ()
+        rows = {int(entry): names[look] for entry, look in zip(entries, look_of, strict=True)}
+        return read_object_attributes(self.depsgraph, rows, self.messages, _POLL_EVERY, poll)
 
     def _narrowed_by(self, instancer):
         if instancer is None:
@@ -191,7 +202,8 @@ class Instances:
             if _LIGHTS_ARE_OBJECTS:
                 narrowed = self._narrowed_by(entry.parent) if entry.is_instance else None
                 hidden, _ = self._objects.sight(thing, narrowed)
-            light = export_light(thing, entry.matrix_world, self.messages, self.depsgraph, hidden)
+            value = functools.partial(self._reader.of_lamp, entry)
+            light = export_light(thing, entry.matrix_world, self.messages, self.depsgraph, hidden, value)
             if light is not None:
                 self.lights.append(light)
         elif thing.type not in _SHOWN_AS_MESH and thing.type not in _SHOWS_NOTHING:

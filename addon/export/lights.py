@@ -19,8 +19,11 @@ from .visibility import object_hidden_from
 _KINDS = {"POINT": LightKind.POINT, "SPOT": LightKind.SPOT, "SUN": LightKind.SUN, "AREA": LightKind.AREA}
 
 
-def export_light(thing, matrix_world, messages, depsgraph=None, hidden=None):
-    """Return the light of an object; None, with a message, if it cannot shine. hidden: Ray bits instead of the object's own."""
+def export_light(thing, matrix_world, messages, depsgraph=None, hidden=None, value=None):
+    """Return the light of an object; None, with a message, if it cannot shine. hidden: Ray bits instead of the object's own.
+
+    value: a function that returns the constants of its Attribute nodes, as NodeGraph.lamp_value.
+    """
     light = thing.data
     who = f"light '{thing.name}'"
     matrix = np.array(matrix_world, float)
@@ -57,6 +60,7 @@ def export_light(thing, matrix_world, messages, depsgraph=None, hidden=None):
     _check_layers(kind, radius, who, messages, depsgraph)
     # Only constant light is supported: read no images.
     graph = NodeGraph(who, messages, NoPictures(), depsgraph, unknown="white")
+    graph.lamp_value = value
     own = light.lancer
     separate = own.use_separate_colors
     return snapshot.Light(

@@ -32,6 +32,7 @@ class _Exported(NamedTuple):
     material: snapshot.Material
     attributes: frozenset = frozenset()  # names of the mesh attributes that it reads
     objects: frozenset = frozenset()  # identities of the objects whose transform it reads
+    reads_layer: bool = False  # see NodeGraph
 
 
 class Materials:
@@ -72,6 +73,10 @@ class Materials:
         """Whether one of these materials reads an object's colour or random number."""
         return any(_tells_apart(self.list[number]) for number in numbers)
 
+    def object_attributes(self, numbers):
+        """Return the names of the ObjectAttributes that these materials read."""
+        return frozenset().union(*(_object_attributes(self.list[number]) for number in numbers))
+
     def attributes(self, numbers):
         """Return the names of the mesh attributes that these materials read, for export_mesh's wanted."""
         return frozenset().union(*(self._attributes[number] for number in numbers))
@@ -79,6 +84,10 @@ class Materials:
 
 def _tells_apart(material):
     return any(node.kind == NodeKind.OBJECT_INFO and node.option in _APART for node in material.nodes)
+
+
+def _object_attributes(material):
+    return {node.name for node in material.nodes if (node.kind, node.option) == (NodeKind.OBJECT_INFO, ObjectFact.ATTRIBUTE)}
 
 
 def _export(material, messages, asker, images, depsgraph):
@@ -102,7 +111,7 @@ def _export(material, messages, asker, images, depsgraph):
     common["flags"] |= values.pop("flags", 0)
     common["ambient"] = _color(graph.add(common["ambient"], values.pop("ambient", 0.0)))
     exported = snapshot.Material(nodes=graph.nodes, **values, **common)
-    return _Exported(exported, frozenset(graph.attributes), frozenset(graph.objects))
+    return _Exported(exported, frozenset(graph.attributes), frozenset(graph.objects), graph.reads_layer)
 
 
 def _flags(material):

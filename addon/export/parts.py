@@ -84,6 +84,9 @@ class Parts:
         if last is None or forgotten or not updates or not all(update.moves_only for update in updates):
             return None
         snapshot, messages, places = last
+        # An attribute may be a property that moves with its object.
+        if snapshot.instances.attributes:
+            return None
         try:
             matrices = places.matrices(depsgraph)
         except (RuntimeError, TypeError):
@@ -103,7 +106,7 @@ class Parts:
         before = len(self._meshes), len(self._shaders)
         self._meshes = {key: mesh for key, mesh in self._meshes.items() if not mesh.owners & reshaped}
         for key, shader in list(self._shaders.items()):
-            by_others = shader.pictures & pictures or shader.exported.objects & moved
+            by_others = shader.pictures & pictures or shader.exported.objects & moved or changed and shader.exported.reads_layer
             if key in changed or by_others or shader.with_time and later:
                 del self._shaders[key]
         if pictures:

@@ -20,6 +20,7 @@ CUBE_SIDES = tuple(f"cube_{sign}_{axis}" for axis in "xyz" for sign in ("positiv
 class Sky(NamedTuple):
     world: snapshot.World
     objects: frozenset = frozenset()  # identities of the objects whose transform its nodes read
+    reads_layer: bool = False  # see NodeGraph
 
 
 def export_world(world, images, depsgraph, messages):
@@ -52,7 +53,7 @@ def export_world(world, images, depsgraph, messages):
         hidden_from=hidden_from(getattr(world, "cycles_visibility", None)),
         map_resolution=cycles.sample_map_resolution if method == "MANUAL" else 0,
     )
-    return Sky(sky, frozenset(graph.objects))
+    return Sky(sky, frozenset(graph.objects), graph.reads_layer)
 
 
 def _nodes(world, graph, who, messages):

@@ -166,7 +166,7 @@ def test_wrong_nodes(raw):
         (kinds.NOISE, 5),
         (kinds.VORONOI, 5),
         (kinds.GRADIENT, 7),
-        (kinds.OBJECT_INFO, 4),
+        (kinds.OBJECT_INFO, 5),
         (kinds.LIGHT_PATH, 15),
     ):
         refused_with(raw.node(kind=kind, option=options), words=["option", str(options)])

@@ -6,7 +6,18 @@ import numpy as np
 from tiny_scenes import quad, showroom
 
 from addon.bindings.enums import Domain, LobeKind, NodeKind
-from addon.bindings.snapshot import Image, Lobe, Material, MeshAttribute, MeshData, Node, NodeRef, Principled, World
+from addon.bindings.snapshot import (
+    Image,
+    Lobe,
+    Material,
+    MeshAttribute,
+    MeshData,
+    Node,
+    NodeRef,
+    ObjectAttribute,
+    Principled,
+    World,
+)
 
 
 def rich():
@@ -39,8 +50,10 @@ def rich():
         nodes=(Node(), seen),
     )
     room = showroom(16)
+    heat = ObjectAttribute("heat", np.arange(4 * len(room.instances)).reshape(-1, 4) / 8.0)
     return dataclasses.replace(
         room,
+        instances=dataclasses.replace(room.instances, attributes=(heat,)),
         meshes=(*room.meshes, mesh),
         images=pictures,
         materials=(*room.materials, paint),

@@ -212,13 +212,13 @@ _TOO_NEW = {
 
 # The scenes that show the older rules of the program.
 _RULES = (
-    "principled_*,glossy_*,glass_*,diffuse_*,mix_*,bump_*,normals_*,image_*,color_attribute_*,object_info_random,point_soft,"
+    "principled_*,property_*,glossy_*,glass_*,diffuse_*,mix_*,bump_*,normals_*,image_*,color_attribute_*,object_info_random,point_soft,"
     "temperature_warm,light_spot_*,light_area_*,light_sun_soft,light_true_*,camera_*,film_*,pass_*"
 )
 _SHARES = {
     "lights": "lights_*",
     "materials": "materials_*,textures_*",
-    "others": "inputs,objects,cameras,passes_*,worlds,films",
+    "others": "inputs,inputs_objects,objects,cameras,passes_*,worlds,films",
 }
 
 

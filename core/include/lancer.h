@@ -32,7 +32,7 @@ extern "C" {
 #endif
 
 /* Incremented with each change of a struct or a call of this header. */
-#define LANCER_ABI_VERSION 5u
+#define LANCER_ABI_VERSION 6u
 
 typedef uint64_t lancer_scene;
 typedef uint64_t lancer_session;
@@ -260,7 +260,7 @@ enum lancer_node_kind {
    * 1: evaluate all curves at the value's x and ignore the factor. flag 1: extrapolate the first and last line, 2: step to
    * the entry before instead of interpolating */
   LANCER_NODE_CURVES = 25,
-  LANCER_NODE_OBJECT_INFO = 26, /* of the object hit; option LANCER_OBJECT_* */
+  LANCER_NODE_OBJECT_INFO = 26, /* of the object hit; option LANCER_OBJECT_*; name: of ATTRIBUTE */
   LANCER_NODE_LIGHT_PATH = 27,  /* of the ray that has hit the surface or reached the world; option LANCER_PATH_* */
   LANCER_NODE_COLOR_MODEL = 28, /* inputs: colour; option LANCER_COLOR_* */
   LANCER_NODE_COUNT = 29
@@ -282,6 +282,7 @@ enum lancer_object_fact {
   LANCER_OBJECT_COLOR,        /* with alpha */
   LANCER_OBJECT_INDEX,
   LANCER_OBJECT_RANDOM,
+  LANCER_OBJECT_ATTRIBUTE, /* of lancer_scene_add_object_attribute; four times 0 without one; 0, 0, 0, 1 in the world */
   LANCER_OBJECT_COUNT
 };
 /* Facts about the ray of a hit. IS_*: 1 or 0. LENGTH: scene units. *_DEPTH: number of earlier scattering events, of that
@@ -680,6 +681,10 @@ LANCER_API lancer_status lancer_scene_add_instances(lancer_scene scene, uint32_t
 /* Sets the data of OBJECT_INFO nodes: infos[count][5] holds colour, alpha and the random number of the first count instances
  * in order of adding, including those left out. All other instances are white with random number 0. */
 LANCER_API lancer_status lancer_scene_set_object_infos(lancer_scene scene, uint32_t count, const float *infos);
+/* Adds an attribute of objects that OBJECT_INFO nodes read by its name, UTF-8: values[count][4] of the first count instances in
+ * order of adding, including those left out. All other instances have 0. A name may be added once. */
+LANCER_API lancer_status lancer_scene_add_object_attribute(lancer_scene scene, const char *name, uint32_t count,
+                                                           const float *values);
 /* Images are numbered 0, 1, 2 ... in order of adding. */
 LANCER_API lancer_status lancer_scene_add_image(lancer_scene scene, const lancer_image *image);
 

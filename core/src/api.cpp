@@ -92,6 +92,11 @@ lancer_status lancer_scene_set_object_infos(lancer_scene scene, uint32_t count, 
                     [&](Description &description) { set_object_infos(description, count, infos); });
 }
 
+lancer_status lancer_scene_add_object_attribute(lancer_scene scene, const char *name, uint32_t count, const float *values) {
+  return fill_scene(scene, values, "object attribute",
+                    [&](Description &description) { add_object_attribute(description, name, count, values); });
+}
+
 lancer_status lancer_scene_add_image(lancer_scene scene, const lancer_image *image) {
   return fill_scene(scene, image, "image", [&](Description &description) { add_image(description, *image); });
 }

@@ -66,6 +66,9 @@ public:
         description.geometry.object_infos.push_back(
             {glm::vec4(any_direction(random), 0.5f), uniform_number(random, 0.0f, 1.0f)});
     }
+    // Of fewer objects than there are.
+    description.geometry.object_attributes.push_back(
+        {attribute_name(description, "paint"), {{0.1f, 0.2f, 0.3f, 0.4f}, {-1.0f, 2.0f, 0.5f, 0.0f}}});
     for (uint32_t i = 0; i < kSides + 6; ++i)
       add_any_image(random, i >= kTiles && i < kSides ? (i == kTiles ? 1001 : i == kTiles + 1 ? 1002 : 1011) : 0);
     for (const uint32_t channels : {1u, 3u, 4u}) {
@@ -170,6 +173,8 @@ inline NodeCase make_case(Random &random, uint32_t kind, uint32_t option, uint32
     x = uniform_number(random, -1.0f, 1.0f);
   const char *names[] = {"", "map", "paint", "face", "grey", "none"};
   last.name = names[random() % 6];
+  if (kind == LANCER_NODE_OBJECT_INFO)
+    last.name = "paint";
   const bool environment = kind == LANCER_NODE_ENVIRONMENT;
   if (kind == LANCER_NODE_IMAGE || environment) {
     const bool cube = environment && option == LANCER_ENVIRONMENT_CUBE, tiles = !environment && random() % 4 == 0;

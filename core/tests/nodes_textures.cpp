@@ -270,6 +270,51 @@ TEST(NodesObjectInfo, TellsWhatWasGiven) {
   EXPECT_THROW(set_object_infos(stage.description, 1, bad), std::exception);
 }
 
+TEST(NodesObjectInfo, ReadsAttributesByNameAndNumber) {
+  Stage stage({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0});
+  Description &description = stage.description;
+  const auto value = [&](const char *name) {
+    lancer_node reader = node(LANCER_NODE_OBJECT_INFO, LANCER_OBJECT_ATTRIBUTE);
+    reader.name = name;
+    return stage.value({reader});
+  };
+  const glm::vec4 none(0.0f);
+  EXPECT_EQ(value("heat"), none);
+  description.instances_given = 3;
+  const float heat[] = {0.1f, 0.2f, 0.3f, 0.4f, -1.0f, 2.0f, 3.0f, 4.0f}, cold[] = {5.0f, 6.0f, 7.0f, 8.0f};
+  add_object_attribute(description, "heat", 2, heat);
+  add_object_attribute(description, "cold", 1, cold);
+  EXPECT_EQ(value("heat"), glm::vec4(0.1f, 0.2f, 0.3f, 0.4f));
+  EXPECT_EQ(value("cold"), glm::vec4(5.0f, 6.0f, 7.0f, 8.0f));
+  EXPECT_EQ(value("warm"), none);
+  EXPECT_EQ(value(""), none);
+  // Rows are numbered in the order of adding, and an instance beyond the last row has 0.
+  description.geometry.instances[0].number = 1;
+  EXPECT_EQ(value("heat"), glm::vec4(-1.0f, 2.0f, 3.0f, 4.0f));
+  EXPECT_EQ(value("cold"), none);
+  EXPECT_EQ(stage.value_at({node(LANCER_NODE_OBJECT_INFO, LANCER_OBJECT_ATTRIBUTE)}, nullptr), grey(0.0f));
+}
+
+TEST(NodesObjectInfo, RefusesWrongAttributes) {
+  Description description;
+  description.instances_given = 1;
+  const float good[] = {0.0f, 1.0f, 2.0f, 3.0f, 0.0f, 0.0f, 0.0f, 0.0f}, bad[] = {0.0f, 0.0f, 0.0f, kInfinite};
+  const auto refusal = [&](const char *name, uint32_t count, const float *values) {
+    try {
+      add_object_attribute(description, name, count, values);
+    } catch (const std::exception &error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(refusal("heat", 2, good), "object attribute 'heat': 2 for 1 instances");
+  EXPECT_EQ(refusal("heat", 1, bad), "object attribute 'heat': number 3 of instance 0 is inf");
+  EXPECT_EQ(refusal(nullptr, 1, good), "object attribute '': name is NULL");
+  EXPECT_EQ(refusal("heat", 1, good), "");
+  EXPECT_EQ(refusal("heat", 1, good), "object attribute 'heat': was added before");
+  EXPECT_EQ(description.geometry.object_attributes.size(), 1u);
+}
+
 TEST(NodesLightPath, TellsKindsAndCounts) {
   LightPath<float> path;
   path.kinds = LANCER_RAY_GLOSSY | kRaySingular | kRayReflected;

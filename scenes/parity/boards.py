@@ -36,12 +36,24 @@ def uneven(index, count):
 
 
 def set_board(scene, tiles):
-    """tiles: (mesh, value) each; value(nodes) gives the output that is shown, brought to 0 ... 1 where it is a vector."""
-    columns, rows = (side // TILE for side in size_of(len(tiles)))
+    """tiles: (mesh, value) each; value(nodes) gives the output that is shown, brought to 0 ... 1 where it is a vector.
+
+    Returns the objects of the tiles."""
+    columns = size_of(len(tiles))[0] // TILE
+    things = []
     for number, (mesh, value) in enumerate(tiles):
-        shown = material(lambda nodes, value=value: nodes.add("ShaderNodeEmission", Color=_positive(nodes, value(nodes))))
         place = number % columns + 0.5, number // columns + 0.5, 0.0
-        parts.place(scene, f"Tile {number}", mesh, shown, place)
+        things.append(parts.place(scene, f"Tile {number}", mesh, shining(value), place))
+    view_board(scene, len(tiles))
+    return things
+
+
+def shining(value):
+    return material(lambda nodes: nodes.add("ShaderNodeEmission", Color=_positive(nodes, value(nodes))))
+
+
+def view_board(scene, count):
+    columns, rows = (side // TILE for side in size_of(count))
     parts.set_world(scene, (0.5, 0.5, 0.5))
     eye = parts.add_camera(scene, (columns / 2, rows / 2, 5), (columns / 2, rows / 2, 0))
     eye.rotation_euler = (0, 0, 0)

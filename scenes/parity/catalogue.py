@@ -19,6 +19,7 @@ SUBJECTS = (
     "textures_files",
     "textures_coordinates",
     "inputs",
+    "inputs_objects",
     "textures_normals",
     "textures_computed",
     "lights_shapes",

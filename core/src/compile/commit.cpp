@@ -160,6 +160,8 @@ uint32_t Scene::face_number(uint32_t instance, uint32_t primitive) const {
 size_t Scene::geometry_bytes() const {
   size_t bytes = geometry.instances.size() * sizeof(Instance) + geometry.object_infos.size() * sizeof(ObjectInfo) +
                  slots.size() * sizeof(uint32_t) + transparent_instances.size() + perforated_instances.size() + lights.bytes();
+  for (const ObjectAttribute &attribute : geometry.object_attributes)
+    bytes += attribute.values.size() * sizeof(glm::vec4);
   for (const Mesh &mesh : geometry.meshes) {
     bytes += mesh.positions.size() * sizeof(glm::vec3) + mesh.triangles.size() * sizeof(glm::uvec3) +
              (mesh.normals.size() + mesh.smooth_normals.size() + mesh.colors.size()) * sizeof(glm::vec3) +

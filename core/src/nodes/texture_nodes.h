@@ -38,17 +38,35 @@ template <class F> Value<F> curves_node(const Inputs<F> &in, const Site<F> &site
   return {color, image.channels == 4 ? on_curve(table, 3, x) : F(1.0f)};
 }
 
+// A named value of the object; 0 without one.
+template <class F> Value<F> object_attribute(const Node &node, const Site<F> &site) {
+  for (const ObjectAttribute &attribute : site.scene.geometry->object_attributes) {
+    if (attribute.name != node.name)
+      continue;
+    const auto channel = [&](int k) __attribute__((always_inline)) {
+      return by_lane<F>([&](int i) {
+        const uint32_t at = site.instance[i]->number;
+        return at < attribute.values.size() ? attribute.values[at][k] : 0.0f;
+      });
+    };
+    return {{channel(0), channel(1), channel(2)}, channel(3)};
+  }
+  return nothing<F>();
+}
+
 // The Object Info node: location, and data that distinguish objects.
 template <class F> Value<F> object_info_node(const Node &node, const Site<F> &site) {
   using D = DoubleOf<F>;
   if (!site.placed)
-    return nothing<F>();
+    return node.option == LANCER_OBJECT_ATTRIBUTE ? solid(Vector3<F>(F(0.0f))) : nothing<F>();
   if (node.option == LANCER_OBJECT_LOCATION) {
     const Vector3<D> origin = translation_of(site, &Instance::to_world);
     return solid(narrow(in_user_world(site, origin)));
   }
   if (node.option == LANCER_OBJECT_INDEX)
     return scalar(by_lane<F>([&](int i) { return static_cast<float>(site.instance[i]->object_index); }));
+  if (node.option == LANCER_OBJECT_ATTRIBUTE)
+    return object_attribute(node, site);
   const std::vector<ObjectInfo> &all = site.scene.geometry->object_infos;
   const auto number = [&](auto which) __attribute__((always_inline)) {
     return by_lane<F>([&](int i) {

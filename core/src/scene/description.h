@@ -50,6 +50,7 @@ void add_mesh(Description &description, const lancer_mesh &mesh);
 void add_instances(Description &description, uint32_t count, const lancer_instance *instances, uint32_t slot_count,
                    const uint32_t *slots, const char *names, size_t names_size);
 void set_object_infos(Description &description, uint32_t count, const float *infos);
+void add_object_attribute(Description &description, const char *name, uint32_t count, const float *values);
 void add_material(Description &description, const lancer_material &material);
 void add_light(Description &description, const lancer_light &light);
 void add_image(Description &description, const lancer_image &image);

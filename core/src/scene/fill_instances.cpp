@@ -66,6 +66,16 @@ void check_instance(const Description &description, const std::string &object, c
                  std::to_string(slot_count) + " slots");
 }
 
+// Checks an array of finite numbers with a row for each of the first count instances.
+void check_rows(const Description &description, const std::string &what, uint32_t count, uint32_t width, const float *values) {
+  if (count > description.instances_given)
+    bad_argument(what + ": " + std::to_string(count) + " for " + std::to_string(description.instances_given) + " instances");
+  for (size_t i = 0; i < size_t(count) * width; ++i)
+    if (!std::isfinite(values[i]))
+      bad_argument(what + ": number " + std::to_string(i % width) + " of instance " + std::to_string(i / width) + " is " +
+                   to_text(values[i]));
+}
+
 } // namespace
 
 void add_instances(Description &description, uint32_t count, const lancer_instance *instances, uint32_t slot_count,
@@ -121,19 +131,32 @@ void add_instances(Description &description, uint32_t count, const lancer_instan
 
 void set_object_infos(Description &description, uint32_t count, const float *infos) {
   constexpr uint32_t kNumbers = 5;
-  if (count > description.instances_given)
-    bad_argument("object infos: " + std::to_string(count) + " for " + std::to_string(description.instances_given) +
-                 " instances");
-  for (size_t i = 0; i < size_t(count) * kNumbers; ++i)
-    if (!std::isfinite(infos[i]))
-      bad_argument("object infos: number " + std::to_string(i % kNumbers) + " of instance " + std::to_string(i / kNumbers) +
-                   " is " + to_text(infos[i]));
+  check_rows(description, "object infos", count, kNumbers, infos);
   std::vector<ObjectInfo> all(count);
   for (size_t i = 0; i < count; ++i) {
     const float *info = infos + i * kNumbers;
     all[i] = {{info[0], info[1], info[2], info[3]}, info[4]};
   }
   description.geometry.object_infos = std::move(all);
+}
+
+void add_object_attribute(Description &description, const char *name, uint32_t count, const float *values) {
+  constexpr uint32_t kNumbers = 4;
+  const std::string what = std::string("object attribute '") + (name ? name : "") + "'";
+  if (!name)
+    bad_argument(what + ": name is NULL");
+  check_rows(description, what, count, kNumbers, values);
+  ObjectAttribute attribute;
+  attribute.name = attribute_name(description, name);
+  for (const ObjectAttribute &other : description.geometry.object_attributes)
+    if (other.name == attribute.name)
+      bad_argument(what + ": was added before");
+  attribute.values.reserve(count);
+  for (size_t i = 0; i < count; ++i) {
+    const float *row = values + i * kNumbers;
+    attribute.values.emplace_back(row[0], row[1], row[2], row[3]);
+  }
+  description.geometry.object_attributes.push_back(std::move(attribute));
 }
 
 } // namespace lancer

@@ -88,10 +88,17 @@ struct ObjectInfo {
   float random = 0.0f;
 };
 
+// A named value of each instance, which OBJECT_INFO nodes read.
+struct ObjectAttribute {
+  uint32_t name = 0;             // index into Description::attribute_names
+  std::vector<glm::vec4> values; // by Instance::number; missing entries are 0
+};
+
 struct Geometry {
   std::vector<Mesh> meshes;
   std::vector<Instance> instances;
   std::vector<ObjectInfo> object_infos; // by Instance::number; missing entries have the default
+  std::vector<ObjectAttribute> object_attributes;
 };
 
 // Selection of the faces of a mesh that can be traced.

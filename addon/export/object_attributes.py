@@ -1,0 +1,99 @@
+"""Values of the Attribute nodes that read objects and instancers: columns of the instance table, and constants of lamps."""
+
+import bpy
+import numpy as np
+
+from ..bindings.snapshot import ObjectAttribute
+from .instance_layers import HAS_INSTANCES, InstanceLayers, Unreadable, makes_instances
+from .properties import object_value, property_value
+
+_OF_OBJECT, _OF_INSTANCER = "object:", "instancer:"
+PREFIXES = {"OBJECT": _OF_OBJECT, "INSTANCER": _OF_INSTANCER}
+_NONE = (0.0, 0.0, 0.0, 0.0)
+_OF_NO_OBJECT = (0.0, 0.0, 0.0, 1.0)
+_LAMPS_ARE_OBJECTS = bpy.app.version >= (4, 5)
+_LARGEST = float(np.finfo(np.float32).max)
+
+
+def read_object_attributes(depsgraph, rows, messages, poll_every, poll):
+    """Return the ObjectAttributes of a table whose rows read these names.
+
+    rows: {number of the entry of the depsgraph: names}, the rows in their order.
+    """
+    reader = AttributeReader(depsgraph, messages)
+    columns = {name: np.zeros((len(rows), 4), np.float32) for name in sorted(frozenset().union(*rows.values()))}
+    of_entry = {entry: row for row, entry in enumerate(rows)}
+    reads_instancers = any(name.startswith(_OF_INSTANCER) for name in columns)
+    for number, entry in enumerate(depsgraph.object_instances):
+        if number % poll_every == 0:
+            poll()
+        names = rows.get(number, ())
+        layers = reader.layers(entry, names) if reads_instancers and entry.is_instance else ()
+        for name in names:
+            columns[name][of_entry[number]] = reader.value(entry, name, layers)
+    return tuple(ObjectAttribute(name, values) for name, values in columns.items())
+
+
+class AttributeReader:
+    """Looks up values by the names of ObjectAttributes."""
+
+    def __init__(self, depsgraph, messages):
+        self._layers = InstanceLayers(depsgraph) if HAS_INSTANCES else None
+        self._messages = messages
+        self._values = {}
+
+    def layers(self, entry, names):
+        """Return the layers of Geometry Nodes that an instance belongs to, the innermost first."""
+        if self._layers is None:
+            if names and makes_instances(entry.parent):
+                self._tell(entry.parent, "this Blender does not expose attributes of Geometry Nodes' instances")
+            return ()
+        try:
+            return self._layers.of(entry)
+        except Unreadable:
+            if names:
+                self._tell(entry.parent, "Blender does not expose the attributes of its instances' own instances")
+            return ()
+
+    def _tell(self, instancer, text):
+        text = f"object '{instancer.name}': {text}, Attribute nodes read properties instead"
+        self._messages.add(text, "feature:attributes of instances")
+
+    def of_lamp(self, entry, name):
+        """Return four finite numbers: 0, 0, 0, 1 where lamps have no properties."""
+        if not _LAMPS_ARE_OBJECTS:
+            return _OF_NO_OBJECT
+        return self.value(entry, name, self.layers(entry, (name,)) if entry.is_instance else ())
+
+    def value(self, entry, name, layers):
+        """Return four finite numbers; zeros if nothing has that name."""
+        of_instancer = name.startswith(_OF_INSTANCER)
+        path = name[len(_OF_INSTANCER if of_instancer else _OF_OBJECT) :]
+        for layer, row in layers if of_instancer else ():
+            value = layer.value(path, row)
+            if value is not None:
+                return self._finite(entry, path, value)
+        thing, instancer, particles = entry.object, entry.parent, entry.particle_system
+        key = (
+            name,
+            thing.original.as_pointer(),
+            thing.data.as_pointer(),
+            0 if instancer is None else instancer.as_pointer(),
+            0 if particles is None else particles.settings.as_pointer(),
+        )
+        if key not in self._values:
+            value = None
+            if of_instancer and entry.is_instance:
+                value = None if particles is None else property_value(particles.settings, path)
+                value = property_value(instancer, path) if value is None else value
+            if value is None:
+                value = object_value(thing, path, entry if entry.is_instance else None)
+            self._values[key] = _NONE if value is None else self._finite(entry, path, value)
+        return self._values[key]
+
+    def _finite(self, entry, path, value):
+        finite = tuple(x if abs(x) <= _LARGEST else 0.0 for x in value)
+        if finite == value:
+            return value
+        self._messages.add(f"object '{entry.object.name}': attribute '{path}' is not finite, 0 is used")
+        return finite
