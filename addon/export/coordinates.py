@@ -20,6 +20,8 @@ _UNREAD = {"N", "generated_transform", "pointiness", "random_per_island", "tange
 if bpy.app.version < (4, 5):
     _UNREAD |= {"Ng", "undisplaced"}
 _TANGENTS = (".tangent", ".tangent_sign")
+# Before 4.5 a bump does not see how the normal of texture coordinates changes.
+_NORMAL_FLAGS = int(bpy.app.version < (4, 5))
 
 _TEXTURE_COORDINATES = {
     "Generated": Coordinate.GENERATED,
@@ -79,6 +81,8 @@ def _texture_coordinate(graph, site, output):
         return None
     if node.from_instancer and which in (Coordinate.GENERATED, Coordinate.UV):
         graph.tell(site, "coordinates from the instancer are not supported, the object's own are used")
+    if which == Coordinate.NORMAL:
+        return graph.emit(NodeKind.COORDINATE, option=which, flags=_NORMAL_FLAGS)
     if which != Coordinate.OBJECT or node.object is None:
         return coordinate(graph, which)
     graph.objects.add(identity(node.object))

@@ -212,7 +212,8 @@ typedef struct lancer_parameter {
  * numbers: x, y, z or RGB, and alpha (1 if the node has none). A scalar is stored in x, y and z. Vectors are in world space
  * and lengths in scene units unless stated otherwise. */
 enum lancer_node_kind {
-  /* option LANCER_COORDINATE_*; matrix: world to object for OBJECT with flag 1; name: the UV map of UV ("" = the mesh's own) */
+  /* option LANCER_COORDINATE_*; matrix: world to object for OBJECT with flag 1; NORMAL with flag 1 is the same at all three
+   * points of a bump; name: the UV map of UV ("" = the mesh's own) */
   LANCER_NODE_COORDINATE = 0,
   LANCER_NODE_ATTRIBUTE = 1, /* name: of the attribute; "" = the mesh's own colours; flags: LANCER_ATTRIBUTE_* */
   /* images [image, image + image_count): one image or the tiles of one; inputs: vector. option: projection LANCER_PROJECT_*;

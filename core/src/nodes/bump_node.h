@@ -119,6 +119,7 @@ template <class F> Site<F> height_site(const Site<F> &site, const Steps<F> &step
   Site<F> place = site;
   move(steps.plane, offset, place);
   place.in_height = true;
+  place.still = &site;
   if (any(steps.undisplaced.found)) {
     const auto was = widen(attribute_at(place, steps.undisplaced).v);
     const auto p = vector_to_world(site, was) + translation_of(site, &Instance::to_world);

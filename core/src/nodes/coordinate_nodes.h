@@ -139,7 +139,7 @@ template <class F> Value<F> coordinate_node(const Node &node, const Site<F> &sit
   case LANCER_COORDINATE_GENERATED:
     return solid(generated(site, node.name));
   case LANCER_COORDINATE_NORMAL:
-    return solid(object_space_normal(site));
+    return solid(object_space_normal(node.flags & 1 ? site.standing() : site));
   case LANCER_COORDINATE_UV:
     return solid(uv(site, node.name));
   case LANCER_COORDINATE_OBJECT:

@@ -44,11 +44,11 @@ template <class F> Value<F> node_value(const Program &program, const Inputs<F> &
   case LANCER_NODE_LAYER_WEIGHT:
     return layer_weight_node(in, site);
   case LANCER_NODE_NORMAL_MAP:
-    return normal_map_node(in, site);
+    return normal_map_node(in, site.standing());
   case LANCER_NODE_BUMP:
     return bump_node(program, in, site);
   case LANCER_NODE_TANGENT:
-    return tangent_node(node, site);
+    return tangent_node(node, site.standing());
   case LANCER_NODE_CLAMP:
     return clamp_node(in);
   case LANCER_NODE_DISPLACEMENT:

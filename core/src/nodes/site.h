@@ -67,10 +67,11 @@ template <class F> struct Site {
   using M = MaskOf<F>;
 
   NodeScene scene;
-  bool surface = false;   // else a direction of the world
-  bool placed = false;    // lanes have instances
-  bool together = false;  // and all lanes have the same one
-  bool in_height = false; // a BUMP is evaluating its height
+  bool surface = false;        // else a direction of the world
+  bool placed = false;         // lanes have instances
+  bool together = false;       // and all lanes have the same one
+  bool in_height = false;      // a BUMP is evaluating its height
+  const Site *still = nullptr; // then, the site of the bump itself
   const Instance *instance[kWidth];
   const Mesh *mesh[kWidth]; // null on exact surfaces
   uint32_t primitive[kWidth];
@@ -94,6 +95,8 @@ template <class F> struct Site {
     on_mesh = by_lane<M>([&](int i) { return mesh[i] != nullptr; });
   }
   LANCER_LANE double user_scale() const { return scene.normalisation ? scene.normalisation->scale : 1.0; }
+  // Returns the site for nodes whose values do not change along a bump's steps.
+  LANCER_LANE const Site &standing() const { return still ? *still : *this; }
   // Returns the interpolation weights on a mesh.
   LANCER_LANE Vector3<F> weights() const { return {narrow(D(1.0) - bary[0] - bary[1]), narrow(bary[0]), narrow(bary[1])}; }
 };
