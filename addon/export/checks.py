@@ -5,6 +5,7 @@ import bpy
 from ..bindings.enums import Pass
 from ..messages.severity import Severity
 from .cycles_settings import check_cycles
+from .visibility import object_hidden_from, sees_light_apart
 
 # Passes that engine/passes.py renders, by the names of a view layer's switches.
 _COMPONENTS = ("diffuse", "glossy", "transmission")
@@ -88,6 +89,13 @@ def check_object(thing, scene, messages):
         messages.add(
             f"object '{thing.name}': shadow catchers are not supported, it is rendered as any other object",
             "feature:shadow catcher",
+        )
+    if sees_light_apart(object_hidden_from(thing)):
+        messages.add(
+            f"object '{thing.name}': shadow rays see it and paths do not, or the reverse: light behind it depends on the "
+            "sampling of lights, which is not Cycles'",
+            "feature:sampling of light behind an object with ray visibility",
+            Severity.HINT,
         )
     # Cycles is an add-on and may be disabled.
     cycles = getattr(thing, "cycles", None)

@@ -38,7 +38,7 @@ def _normal_map(graph, site, output):
     # Blender 3 interpolates linearly from the normal to the mapped one.
     v = VectorOperation
     mapped = graph.emit(NodeKind.NORMAL_MAP, 1.0, color, option=space, name=attribute_name(node.uv_map))
-    plain = graph.normal if isinstance(graph.normal, NodeRef) else coordinate(graph, Coordinate.SHADING_NORMAL)
+    plain = _as_value(graph, graph.normal)
     share = graph.op(MathOperation.MAXIMUM, strength, 0.0)
     way = graph.vector_op(v.SCALE, graph.vector_op(v.SUBTRACT, mapped, plain), scale=share)
     return graph.vector_op(v.NORMALIZE, graph.vector_op(v.ADD, plain, way))
@@ -47,11 +47,16 @@ def _normal_map(graph, site, output):
 def _bump(graph, site, output):
     normal = graph.linked(site, ("Normal",), graph.normal)
     if not graph.is_linked(site, ("Height",)):
-        return normal
+        return _as_value(graph, normal)
     strength, distance = graph.value(site, "Strength"), graph.value(site, "Distance")
     width = graph.parameter(site, ("Filter Width",), _WHOLE_PIXEL)
     first, height = graph.height_nodes(lambda: graph.value(site, "Height"))
-    return bump(graph, first, height, strength, distance, normal, width, site.node.invert)
+    return _as_value(graph, bump(graph, first, height, strength, distance, normal, width, site.node.invert))
+
+
+def _as_value(graph, normal):
+    """Return a normal as a vector for nodes that compute with it: the surface's own is no node's result."""
+    return normal if isinstance(normal, NodeRef) else coordinate(graph, Coordinate.SHADING_NORMAL)
 
 
 def bump(graph, first, height, strength, distance, normal, width, invert=False, undisplaced=False):
@@ -76,7 +81,7 @@ def _layer_weight(graph, site, output):
 
 def _bevel(graph, site, output):
     graph.tell(site, "Bevel is not supported, the normal is kept")
-    return graph.linked(site, ("Normal",), graph.normal)
+    return _as_value(graph, graph.linked(site, ("Normal",), graph.normal))
 
 
 def _displacement(graph, site, output):

@@ -36,3 +36,15 @@ def object_hidden_from(thing):
         if not getattr(thing, name):
             bits |= bit
     return bits
+
+
+_OF_LIGHT = int(Ray.DIFFUSE | Ray.GLOSSY | Ray.TRANSMISSION)
+
+
+def sees_light_apart(hidden):
+    """Whether a surface blocks the shadow rays of scattered paths but not the paths, or the reverse: Ray bits as above.
+
+    Light behind it then depends on the share of each technique in multiple importance sampling.
+    """
+    blocks = ~hidden & _OF_LIGHT
+    return blocks != 0 if hidden & int(Ray.SHADOW) else blocks != _OF_LIGHT

@@ -77,7 +77,8 @@ template <class F> Tangent<F> tangent_at(const Node &node, const Site<F> &site, 
 
 template <class F> Value<F> normal_map_node(const Inputs<F> &in, const Site<F> &site) {
   using V3 = Vector3<F>;
-  if (!site.surface)
+  // The world has no tangents.
+  if (!site.surface && in.node.option == 0)
     return solid(site.ns);
   const F zero(0.0f), one(1.0f);
   F strength = in.scalar(0);
