@@ -3,7 +3,7 @@
 import bpy
 
 from ..bindings import snapshot
-from ..bindings.enums import LobeKind, Rules
+from ..bindings.enums import LobeKind, MathOperation, Rules
 from ..bindings.shading import NodeRef
 from ..bindings.structs import PARAMETERS, Principled
 from .arithmetic import is_constant
@@ -27,6 +27,8 @@ def read_principled(surface, site, weight):
 
     # Alpha weighs the surface; the rest of the light passes straight through.
     alpha = number("alpha", 1.0, 0.0, 1.0)
+    if isinstance(alpha, NodeRef):
+        alpha = graph.op(MathOperation.ADD, alpha, 0.0, clamped=True)
     surface.transmit(graph.multiply(graph.subtract(1.0, alpha), weight))
     weight = graph.multiply(weight, alpha)
     if is_constant(weight, 0.0):
