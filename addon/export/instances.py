@@ -51,7 +51,8 @@ class Places(NamedTuple):
     def _columns(self, walk):
         """Return (entries, 4, 4), the columns of all matrices. A second walk is faster than a Python object for each entry."""
         if self.one_by_one:
-            return np.array([entry.matrix_world for entry in walk], np.float32).transpose(0, 2, 1)
+            # Copy each matrix at once: the walk moves the entry that the matrix refers to.
+            return np.array([np.array(entry.matrix_world) for entry in walk], np.float32).transpose(0, 2, 1)
         columns = np.empty(16 * self.count, np.float32)
         walk.foreach_get("matrix_world", columns)
         return columns.reshape(-1, 4, 4)
