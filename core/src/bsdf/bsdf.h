@@ -25,6 +25,7 @@ template <class F> struct BsdfSample {
   MaskOf<F> delta = uniform<F>(false);       // a single direction: evaluation and pdf elsewhere are 0
   MaskOf<F> transmitted = uniform<F>(false); // wi passes through the surface
   WordOf<F> component{0u};                   // Component of the sampled lobe
+  MaskOf<F> diffuse = uniform<F>(false);     // the ray is a diffuse one: also of velvet, whose light is glossy
   F alpha2{1.0f};                            // alpha_x alpha_y of the sampled lobe; 0 for a single direction
 };
 

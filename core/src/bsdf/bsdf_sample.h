@@ -149,6 +149,8 @@ template <class F> BsdfSample<F> Bsdf<F>::sample(F u_lobe, F u, F v) const {
     const B crossing = mine & uniform<F>(splits(lobe)) & (direction.wi.z < zero);
     result.component = select(mine, numbered(static_cast<int>(lobe.component)), result.component);
     result.component = select(crossing, numbered(static_cast<int>(Component::Transmission)), result.component);
+    if (lobe.component == Component::Diffuse || is_matte(lobe, Matte::Velvet))
+      result.diffuse = result.diffuse | mine;
   }
   for (int i = 0; i < frame_count; ++i) {
     const B standing = equal(frame, numbered(i));

@@ -135,9 +135,10 @@ template <class F> LANCER_LANE Lobe<F> make_burley(const Vec3<F> &weight, F roug
   return lobe;
 }
 
-// Ashikhmin's velvet; Cycles clamps sigma to at least 0.01.
+// Ashikhmin's velvet; Cycles clamps sigma to at least 0.01, and shows the light in the glossy passes.
 template <class F> LANCER_LANE Lobe<F> make_velvet(const Vec3<F> &weight, F sigma) {
   Lobe<F> lobe = make_matte<F>(Matte::Velvet, weight);
+  lobe.component = Component::Glossy;
   const F s = min(max(sigma, F(0.01f)), F(1.0f));
   lobe.alpha_x = 1.0f / (s * s);
   return lobe;

@@ -262,7 +262,7 @@ void scatter(VertexBlock &block) {
       store3(block.share[component], first, sample.share[component]);
     look_around(block, first, bsdf, sample);
     block.sampled |= placed_bits((!black(sample.weight)) & (sample.pdf > F(0.0f)), first);
-    block.diffuse |= placed_bits(equal(sample.component, U(static_cast<uint32_t>(Component::Diffuse))), first);
+    block.diffuse |= placed_bits(sample.diffuse, first);
     block.transmitted |= placed_bits(sample.transmitted, first);
   }
 }
