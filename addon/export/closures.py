@@ -1,5 +1,7 @@
 """Readers of shader nodes: each adds the lobes, emission, transmittance or holdout of its node to a Surface."""
 
+import bpy
+
 from ..bindings.enums import Distribution, LobeKind
 from ..messages.severity import Severity
 from .arithmetic import is_constant
@@ -64,6 +66,10 @@ def _tell_thin_film(surface, site):
         surface.graph.tell(site, "input 'Thin Film Thickness' is not supported, the surface has no film", "feature:thin film")
 
 
+# The option of CONDUCTOR; before 5.0 Cycles approximates the Fresnel equations of metals.
+_F82, _PHYSICAL = 0, 1 if bpy.app.version >= (5, 0) else 2
+
+
 def _metallic(surface, site, weight):
     _tell_thin_film(surface, site)
     physical = site.node.fresnel_type == "PHYSICAL_CONDUCTOR"
@@ -76,7 +82,7 @@ def _metallic(surface, site, weight):
         weight,
         color,
         edge=edge,
-        option=int(physical),
+        option=_PHYSICAL if physical else _F82,
         roughness=_roughness(surface, site, 0.5),
         normal=surface.normal(site),
         distribution=read_distribution(surface.graph, site),

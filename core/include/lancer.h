@@ -509,7 +509,8 @@ typedef struct lancer_node {
  *   GLOSSY       a metal of constant color, with distribution
  *   GLASS        reflection and refraction by Fresnel of ior, rough or smooth, with distribution
  *   REFRACTION   the refraction of GLASS alone, with weight color
- *   CONDUCTOR    option 0: F82, color at the normal and edge at 82 degrees; 1: ior = color, extinction = edge
+ *   CONDUCTOR    option 0: F82, color at the normal and edge at 82 degrees; 1: ior = color, extinction = edge;
+ *                2: the same, approximated for strong absorption as in Blender before 5.0
  *   SHEEN        cloth: distribution GGX = microfibres, BECKMANN = Ashikhmin's velvet (VELVET before 4.0)
  *   TRANSLUCENT  color/pi on the other side
  *   PRINCIPLED   see lancer_principled */

@@ -125,7 +125,8 @@ LANCER_LANE Lobe<F> facets_of(const LobeInputs<F> &inputs, uint8_t frame, F alph
   else if (inputs.option == 0)
     set_f82(lobe, clamp01(inputs.color), clamp01(inputs.edge));
   else
-    set_conductor(lobe, max(inputs.color, none), max(inputs.edge, none));
+    set_conductor(lobe, inputs.option == 1 ? FresnelKind::Conductor : FresnelKind::StrongConductor, max(inputs.color, none),
+                  max(inputs.edge, none));
   return lobe;
 }
 

@@ -98,7 +98,7 @@ template <class F> struct LanePlans : LaneRecords<F, CachedPlan> {
       lobe.f0 = vector(LANCER_OF(lobe.f0));
     if (first.fresnel == FresnelKind::F82)
       lobe.b = vector(LANCER_OF(lobe.b));
-    if (first.fresnel == FresnelKind::Conductor)
+    if (first.fresnel == FresnelKind::Conductor || first.fresnel == FresnelKind::StrongConductor)
       lobe.f90 = vector(LANCER_OF(lobe.f90));
     if (first.fresnel == FresnelKind::Schlick) {
       lobe.lowest = number(LANCER_OF(lobe.lowest));

@@ -56,6 +56,15 @@ template <class F> LANCER_LANE F fresnel_conductor(F cos_i, F n, F k) {
   return 0.5f * (rs + rp);
 }
 
+// Returns the reflectance of a metal under the assumption n^2 + k^2 >> 1, which Cycles before 5.0 makes.
+template <class F> LANCER_LANE F fresnel_strong_conductor(F cos_i, F n, F k) {
+  const F c = clamp01(cos_i), size = n * n + k * k, twice = 2.0f * n * c, one(1.0f);
+  const F parallel = (size * c * c - twice + one) / (size * c * c + twice + one);
+  const F across_sum = size + twice + c * c;
+  const F across = select(across_sum > F(0.0f), (size - twice + c * c) / across_sum, one);
+  return 0.5f * (parallel + across);
+}
+
 // Returns the refracted direction for wo with wo.z > 0; cos_t from fresnel(wo.z, eta). The refracted direction has z < 0.
 template <class F> LANCER_LANE Vec3<F> refract_local(const Vec3<F> &wo, F eta, F cos_t) {
   return normalize(Vec3<F>(-wo.x / eta, -wo.y / eta, -cos_t));
@@ -102,6 +111,14 @@ template <class F> LANCER_LANE Vec3<F> schlick(const Lobe<F> &lobe, F reflectanc
   return lobe.f0 + (lobe.f90 - lobe.f0) * clamp01((reflectance - lobe.lowest) * lobe.per_range);
 }
 
+template <class F> LANCER_LANE Vec3<F> conductor_response(const Lobe<F> &lobe, F cos_i) {
+  if (lobe.fresnel == FresnelKind::StrongConductor)
+    return {fresnel_strong_conductor(cos_i, lobe.f0.x, lobe.f90.x), fresnel_strong_conductor(cos_i, lobe.f0.y, lobe.f90.y),
+            fresnel_strong_conductor(cos_i, lobe.f0.z, lobe.f90.z)};
+  return {fresnel_conductor(cos_i, lobe.f0.x, lobe.f90.x), fresnel_conductor(cos_i, lobe.f0.y, lobe.f90.y),
+          fresnel_conductor(cos_i, lobe.f0.z, lobe.f90.z)};
+}
+
 // cos_i: of wo to the facet.
 template <class F> LANCER_LANE FacetResponse<F> facet_response(const Lobe<F> &lobe, F cos_i) {
   using V = Vec3<F>;
@@ -109,8 +126,8 @@ template <class F> LANCER_LANE FacetResponse<F> facet_response(const Lobe<F> &lo
   r.reflected = V(F(1.0f));
   switch (lobe.fresnel) {
   case FresnelKind::Conductor:
-    r.reflected = {fresnel_conductor(cos_i, lobe.f0.x, lobe.f90.x), fresnel_conductor(cos_i, lobe.f0.y, lobe.f90.y),
-                   fresnel_conductor(cos_i, lobe.f0.z, lobe.f90.z)};
+  case FresnelKind::StrongConductor:
+    r.reflected = conductor_response(lobe, cos_i);
     return r;
   case FresnelKind::F82:
     r.reflected = fresnel_f82(cos_i, lobe.f0, lobe.b);

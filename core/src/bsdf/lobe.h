@@ -32,12 +32,13 @@ enum class Scatter : uint8_t { Reflect = 1, Refract = 2, Both = 3 };
 
 // The Fresnel curve of a microfacet: F of the half vector's cosine.
 enum class FresnelKind : uint8_t {
-  None = 0,       // 1 reflected, 1 refracted: color is the full weight; f0 is the mean of further bounces
-  Dielectric = 1, // of ior
-  Conductor = 2,  // n = f0, k = f90
-  F82 = 3,        // f0 at the normal, b the Lazanyi term
-  Schlick = 4,    // f0 ... f90 along the dielectric curve of ior
-  Principled3 = 5 // the same by the rules of Blender 3.x
+  None = 0,           // 1 reflected, 1 refracted: color is the full weight; f0 is the mean of further bounces
+  Dielectric = 1,     // of ior
+  Conductor = 2,      // n = f0, k = f90
+  F82 = 3,            // f0 at the normal, b the Lazanyi term
+  Schlick = 4,        // f0 ... f90 along the dielectric curve of ior
+  Principled3 = 5,    // the same by the rules of Blender 3.x
+  StrongConductor = 6 // n = f0, k = f90, approximated for strong absorption
 };
 
 inline constexpr int kMaxFrames = 16;

@@ -53,8 +53,8 @@ template <class F> LANCER_LANE void set_dielectric(Lobe<F> &lobe, F ior) {
   lobe.ior = ior;
 }
 
-template <class F> LANCER_LANE void set_conductor(Lobe<F> &lobe, const Vec3<F> &n, const Vec3<F> &k) {
-  lobe.fresnel = FresnelKind::Conductor;
+template <class F> LANCER_LANE void set_conductor(Lobe<F> &lobe, FresnelKind kind, const Vec3<F> &n, const Vec3<F> &k) {
+  lobe.fresnel = kind;
   lobe.f0 = n;
   lobe.f90 = k;
 }
@@ -132,13 +132,10 @@ template <class F> LANCER_LANE Vec3<F> further_bounce(const Lobe<F> &lobe) {
     return lobe.f0;
   case FresnelKind::Dielectric:
     return V(dielectric_sky(lobe.ior));
-  case FresnelKind::Conductor: {
+  case FresnelKind::Conductor:
+  case FresnelKind::StrongConductor: {
     // The curve of F82 through the values at normal incidence and at the edge.
-    const auto at = [&](F cosine) {
-      return V(fresnel_conductor(cosine, lobe.f0.x, lobe.f90.x), fresnel_conductor(cosine, lobe.f0.y, lobe.f90.y),
-               fresnel_conductor(cosine, lobe.f0.z, lobe.f90.z));
-    };
-    const V f0 = at(F(1.0f)), edge = at(F(1.0f / 7.0f));
+    const V f0 = conductor_response(lobe, F(1.0f)), edge = conductor_response(lobe, F(1.0f / 7.0f));
     return clamp01(f82_sky(f0, F(kEdgeScale) * (schlick_at_edge(f0) - edge)));
   }
   case FresnelKind::F82:

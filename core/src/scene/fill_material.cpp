@@ -142,7 +142,7 @@ void check_lobe(const std::string &object, const lancer_lobe &lobe, uint32_t i) 
   };
   check("kind", lobe.kind, LANCER_LOBE_KIND_COUNT);
   check("distribution", lobe.distribution, LANCER_DISTRIBUTION_MULTI_GGX + 1);
-  check("option", lobe.option, 2);
+  check("option", lobe.option, lobe.kind == LANCER_CONDUCTOR ? 3 : 2);
   check("rules", lobe.rules, LANCER_RULES_BLENDER_45 + 1);
   if (lobe.kind != LANCER_PRINCIPLED)
     return;
