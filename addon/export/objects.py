@@ -57,13 +57,13 @@ class Objects:
 
     def sight(self, thing, narrowed):
         """Return (Ray bits that do not see the object, InstanceFlag bits). narrowed: narrowed_by() of an instancer, or None."""
-        hidden, holdout = object_hidden_from(thing), self._is_holdout(thing)
+        hidden = object_hidden_from(thing)
         if narrowed is None:
-            indirect = self._is_indirect(thing)
+            holdout, indirect = self._is_holdout(thing), self._is_indirect(thing)
         else:
+            # As in Cycles, an original that is a holdout or indirect only leaves its instances as they are.
             hidden |= narrowed[0]
-            holdout = holdout or narrowed[1]
-            indirect = narrowed[2]
+            holdout, indirect = narrowed[1:]
         if indirect and not holdout:
             hidden |= int(Ray.CAMERA)
         return hidden, int(InstanceFlag.HOLDOUT) if holdout else 0

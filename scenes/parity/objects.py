@@ -188,6 +188,23 @@ def collection_instances(scene):
     camera(scene)
 
 
+@case(quick=True, bounces=0, size=(48, 32))
+def instances_and_holdouts(scene):
+    """The instancer alone decides whether its instances are holes; an original that is one leaves them as they are."""
+    source = bpy.data.collections.new("Source")
+    grey = shader("ShaderNodeBsdfDiffuse", Color=(0.6, 0.6, 0.6))
+    thing = parts.place(scene, "Original", parts.cube_mesh("Original", 0.8), grey, (0, 40, 0))
+    thing.is_holdout = True
+    source.objects.link(thing)
+    for index in range(2):
+        copy = bpy.data.objects.new(f"Copy {index}", None)
+        copy.instance_type, copy.instance_collection = "COLLECTION", source
+        copy.location, copy.is_holdout = (1.4 * index - 0.7, -40, 0.6), index == 1
+        scene.collection.objects.link(copy)
+    sky(scene)
+    camera(scene)
+
+
 @case()
 def sheared_mesh(scene):
     """A matrix that is no product of location, rotation and scale."""
