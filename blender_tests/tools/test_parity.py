@@ -198,7 +198,7 @@ def test_the_judge_finds_cycles_equal_to_itself(tmp_path):
 
 # The scenes of `make test` whose settings exist only in a later Blender.
 _KINDS = ("point", "spot", "sun", "area")
-_SINCE_45 = {"temperature_warm"} | {
+_SINCE_45 = {"temperature_warm", "attribute_of_instance"} | {
     f"light_{name}_{kind}" for name in ("exposure", "normalize_off", "temperature") for kind in _KINDS
 }
 _TOO_NEW = {
@@ -218,7 +218,7 @@ _RULES = (
 _SHARES = {
     "lights": "lights_*",
     "materials": "materials_*,textures_*",
-    "others": "inputs,inputs_objects,objects,cameras,passes_*,worlds,films",
+    "others": "inputs,inputs_objects,inputs_instances,objects,cameras,passes_*,worlds,films",
 }
 
 

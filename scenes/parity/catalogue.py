@@ -20,6 +20,7 @@ SUBJECTS = (
     "textures_coordinates",
     "inputs",
     "inputs_objects",
+    "inputs_instances",
     "textures_normals",
     "textures_computed",
     "lights_shapes",

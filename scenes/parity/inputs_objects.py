@@ -1,4 +1,4 @@
-"""Properties that the Attribute node reads by name of objects, instancers and the view layer; attributes of instances."""
+"""Properties of objects, instancers, the view layer, lamps and the sky, which the Attribute node reads by name."""
 
 import bpy
 
@@ -25,7 +25,7 @@ def _reader(kind, name, output="Color"):
     return output_of("ShaderNodeAttribute", output, {"attribute_type": kind, "attribute_name": name})
 
 
-def _with_alpha(kind, name):
+def with_alpha(kind, name):
     """The colour plus a share of its alpha, in one tile."""
 
     def value(nodes):
@@ -55,7 +55,7 @@ def property_of_object(scene):
 # ---- instancers ----
 
 
-def _object(scene, mesh, parent=None):
+def source_object(scene, mesh, parent=None):
     thing = bpy.data.objects.new("Source", mesh)
     scene.collection.objects.link(thing)
     thing.parent = parent
@@ -67,7 +67,7 @@ def _object(scene, mesh, parent=None):
     return thing
 
 
-def _instancer(scene, place, mesh=None):
+def instancer(scene, place, mesh=None):
     thing = bpy.data.objects.new("Instancer", mesh)
     scene.collection.objects.link(thing)
     thing.location, thing.color, thing.pass_index = place, (0.6, 0.7, 0.8, 0.9), 2
@@ -78,7 +78,7 @@ def _instancer(scene, place, mesh=None):
 
 
 def _alone(scene, place, shown):
-    _object(scene, _covered(tile_mesh(), shown)).location = place
+    source_object(scene, covered(tile_mesh(), shown)).location = place
 
 
 def _curve(scene, place, shown):
@@ -89,15 +89,15 @@ def _curve(scene, place, shown):
     spline.use_cyclic_u = True
     for point, (x, y) in zip(spline.points, ((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)), strict=True):
         point.co = x, y, 0, 1
-    _object(scene, _covered(curve, shown)).location = place
+    source_object(scene, covered(curve, shown)).location = place
 
 
 def _collection(scene, place, shown):
     group = bpy.data.collections.new("Group")
-    thing = _object(scene, _covered(tile_mesh(), shown))
+    thing = source_object(scene, covered(tile_mesh(), shown))
     scene.collection.objects.unlink(thing)
     group.objects.link(thing)
-    maker = _instancer(scene, place)
+    maker = instancer(scene, place)
     maker.instance_type, maker.instance_collection = "COLLECTION", group
 
 
@@ -110,30 +110,30 @@ def _collection_twice(scene, place, shown):
     inner["of object"], inner["of both"] = 0.85, 0.95
     group = bpy.data.collections.new("Outer group")
     group.objects.link(inner)
-    maker = _instancer(scene, place)
+    maker = instancer(scene, place)
     maker.instance_type, maker.instance_collection = "COLLECTION", group
 
 
 def _vertices(scene, place, shown):
     mesh = parts.mesh_from_points("Seat", [(0, 0, 0)], [])
-    maker = _instancer(scene, place, mesh)
+    maker = instancer(scene, place, mesh)
     maker.instance_type = "VERTS"
-    _object(scene, _covered(tile_mesh(), shown), maker)
+    source_object(scene, covered(tile_mesh(), shown), maker)
 
 
 def _faces(scene, place, shown):
     mesh = parts.plane_mesh("Seat", 0.1)
-    maker = _instancer(scene, place, mesh)
+    maker = instancer(scene, place, mesh)
     maker.instance_type, maker.show_instancer_for_render = "FACES", False
-    _object(scene, _covered(tile_mesh(), shown), maker)
+    source_object(scene, covered(tile_mesh(), shown), maker)
 
 
 def _particles(scene, place, shown):
     """A cube, which looks the same from above whichever way particles turn it."""
     mesh = parts.mesh_from_points("Seat", [(0, 0, 0), (0.001, 0, 0), (0, 0.001, 0)], [(0, 1, 2)])
-    maker = _instancer(scene, place, mesh)
+    maker = instancer(scene, place, mesh)
     maker.show_instancer_for_render = False
-    source = _object(scene, _covered(parts.cube_mesh("Cube", 1.0), shown))
+    source = source_object(scene, covered(parts.cube_mesh("Cube", 1.0), shown))
     source.location = (0, -50, 0)
     maker.modifiers.new("Particles", "PARTICLE_SYSTEM")
     settings = maker.particle_systems[0].settings
@@ -143,7 +143,7 @@ def _particles(scene, place, shown):
     settings["of settings"], settings["of both data"] = 0.75, 0.85
 
 
-def _covered(data, shown):
+def covered(data, shown):
     data.materials.append(shown)
     return data
 
@@ -161,7 +161,7 @@ def property_of_instancer(scene):
     """Each way to make instances by each place in which a property is looked for."""
     looks = [(make, kind, name) for make in _MAKERS for kind in _KINDS for name in _NAMES]
     for number, (make, kind, name) in enumerate(looks):
-        make(scene, (number % 8 + 0.5, number // 8 + 0.5, 0.0), shining(_with_alpha(kind, name)))
+        make(scene, (number % 8 + 0.5, number // 8 + 0.5, 0.0), shining(with_alpha(kind, name)))
     view_board(scene, len(looks))
 
 
