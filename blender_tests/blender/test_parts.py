@@ -49,6 +49,17 @@ def test_edits(which, tmp_path):
 
 
 @pytest.mark.parametrize("which", [MODULE, PROGRAM])
+def test_edits_of_properties(which, tmp_path):
+    """A window's export follows the properties that Attribute nodes read."""
+    got = blenders.run(which, tmp_path, "parts_cases", "property_edits")
+    got.pop("console")
+    assert not [name for name, result in got.items() if not result[1]], "another snapshot than that of an export of everything"
+    shaders = {name: result[0]["shaders"] for name, result in got.items()}
+    # The material that reads the view layer is read at each update; the world's own update changes the world, too.
+    assert shaders == {"first": 3, "object": 0, "moved object": 0, "view layer": 1, "scene": 1, "world": 2}
+
+
+@pytest.mark.parametrize("which", [MODULE, PROGRAM])
 @pytest.mark.parametrize("persistent", ["no", "yes"])
 def test_frames_keep_what_does_not_change(which, tmp_path, persistent):
     """Four of nine meshes change, by a shape key, two modifiers and a face's slot; one of two image files is rewritten."""

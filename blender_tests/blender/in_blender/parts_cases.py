@@ -183,7 +183,7 @@ def _plain(given):
         (given.meshes[mesh], tuple(_material(given, table.slots[first + i]) for i in range(count)), matrix.tolist())
         for mesh, first, count, matrix in zip(table.meshes, table.first_slots, table.slot_counts, table.matrices, strict=True)
     ]
-    return rows, given.lights, _with_pictures(given, given.world), given.settings
+    return rows, table.attributes, given.lights, _with_pictures(given, given.world), given.settings
 
 
 def _material(given, number):
@@ -199,6 +199,10 @@ def _with_pictures(given, shader):
 def edits():
     """Return {edit: counts of all exports that it caused, same snapshot, same messages}."""
     _build()
+    return _results(EDITS)
+
+
+def _results(edits):
     window = _Window()
     results = {}
     bpy.context.view_layer.update()
@@ -208,7 +212,7 @@ def edits():
     handlers.depsgraph_update_post.append(window.export)
     handlers.frame_change_post.append(window.export)
     try:
-        for name, edit in EDITS.items():
+        for name, edit in edits.items():
             edit()
             bpy.context.view_layer.update()
             counts = {kind: sum(export[0][kind] for export in window.exports) for kind in KINDS}
@@ -219,3 +223,45 @@ def edits():
         handlers.depsgraph_update_post.remove(window.export)
         handlers.frame_change_post.remove(window.export)
     return results
+
+
+def _named(kind, name):
+    """Return a material coloured by a property."""
+
+    def make(node):
+        node.attribute_type, node.attribute_name = kind, name
+
+    return _fed(f"{kind} {name}", "ShaderNodeAttribute", "Color", make)
+
+
+def _give(block, value):
+    def edit():
+        owner = eval(block)
+        owner["heat"] = value
+        owner.id_data.update_tag()
+
+    return edit
+
+
+_EDITS_OF_OBJECTS = {
+    "object": _give("bpy.data.objects['Heated']", 0.5),
+    "moved object": _set("objects['Placed'].location", (1, 2, 3)),
+}
+_EDITS_OF_THE_LAYER = {
+    "view layer": _give("bpy.context.view_layer", 0.6),
+    "scene": _give("bpy.context.scene", 0.7),
+    "world": _give("bpy.context.scene.world", 0.8),
+}
+
+
+def property_edits():
+    """As edits, where materials read properties of objects, and then of the view layer too."""
+    stage.empty()
+    bpy.context.scene["heat"] = 0.1
+    _box(0, "Heated", _named("OBJECT", "heat"))["heat"] = 0.2
+    _box(1, "Placed", _named("OBJECT", "location"))
+    stage.sky()
+    stage.camera()
+    results = _results(_EDITS_OF_OBJECTS)
+    _box(2, "Layered", _named("VIEW_LAYER", "heat"))
+    return {**_results(_EDITS_OF_THE_LAYER), **results}
