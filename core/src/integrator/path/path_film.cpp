@@ -63,7 +63,8 @@ void PathFilm::add(const Path &path, const glm::vec3 &radiance, bool environment
   // A transparent film leaves the environment behind it to the environment's pass: picture and guides have none of it.
   const bool hidden = environment && settings_.film_transparent && path.in_view;
   if (wants_guides(path) && !hidden)
-    result.albedo += guides_[path.slot].beta * radiance;
+    // The leader stands for all paths that share its weight.
+    result.albedo += float(path.sharers) * guides_[path.slot].beta * radiance;
   // Light seen through clear glass is in no pass of indirect light: clamp it separately.
   if (path.in_view) {
     const float top = largest(glm::abs(radiance)), limit = settings_.clamp_indirect / float(path.sharers);
