@@ -3,7 +3,7 @@
 import blenders
 import numpy as np
 import pytest
-from blenders import MODULE
+from blenders import MODULE, PROGRAM
 
 from tools.differ import data_passes, generator, record
 from tools.differ.record import Record
@@ -100,6 +100,12 @@ def verdicts(tmp_path_factory):
 def test_fixed_seeds_show_the_same(verdicts):
     assert len(SEEDS) == 20
     assert {seed: verdicts[str(seed)] for seed in SEEDS if verdicts[str(seed)][0] != "pass"} == {}
+
+
+@pytest.mark.parametrize("kind", [MODULE, PROGRAM])
+def test_mended_faults_stay_mended(tmp_path, kind):
+    verdicts = blenders.run(kind, tmp_path, "differ_cases", "mended")
+    assert {name: verdict for name, verdict in verdicts.items() if verdict[0] != "pass"} == {}
 
 
 def test_a_planted_fault_is_found(tmp_path):

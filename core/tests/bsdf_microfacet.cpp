@@ -84,6 +84,18 @@ TEST(Microfacet, ConductorMatchesComplexArithmetic) {
   }
 }
 
+TEST(Microfacet, StrongConductorIsExactAtNormalIncidenceAndForStrongAbsorption) {
+  Random random(4);
+  for (int k = 0; k < 2000; ++k) {
+    const float c = random.uniform(), n = 3.0f * random.uniform(), kappa = 6.0f * random.uniform();
+    ASSERT_NEAR(fresnel_strong_conductor(1.0f, n, kappa), fresnel_conductor(1.0f, n, kappa), 2e-4) << n << " " << kappa;
+    // The approximation leaves out sin^2 beside (n + i k)^2, at most a share 1 / (n^2 + k^2) of it, to first order of the
+    // reflectance's distance from 1.
+    const float strong = 40.0f + kappa, size = n * n + strong * strong;
+    ASSERT_NEAR(fresnel_strong_conductor(c, n, strong), fresnel_conductor(c, n, strong), 4.0f / size) << n << " " << strong;
+  }
+}
+
 TEST(Microfacet, F82HoldsItsTintAtTheEdge) {
   Lobe<float> lobe = make_microfacet(Scatter::Reflect, 0, glm::vec3(1.0f), 0.1f, 0.1f, Rules::Blender45);
   const glm::vec3 f0(0.9f, 0.5f, 0.1f), tint(1.0f, 0.5f, 0.25f);

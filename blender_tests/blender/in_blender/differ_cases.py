@@ -4,6 +4,7 @@ import tempfile
 
 from tools.differ import generator
 from tools.differ.judge import judge
+from tools.differ.mended import SCENES
 from tools.differ.record import Record
 
 from addon.export import lights
@@ -30,6 +31,13 @@ def fixed(*seeds):
     with tempfile.TemporaryDirectory() as folder:
         answers = {seed: judge(generator.describe(int(seed)), folder, _SAMPLES) for seed in seeds}
     return {seed: [answer["verdict"], answer["text"], answer["told"]] for seed, answer in answers.items()}
+
+
+def mended():
+    """{scene: [verdict, text, messages]}"""
+    with tempfile.TemporaryDirectory() as folder:
+        answers = {name: judge(scene, folder, _SAMPLES) for name, scene in SCENES.items()}
+    return {name: [answer["verdict"], answer["text"], answer["told"]] for name, answer in answers.items()}
 
 
 def planted():

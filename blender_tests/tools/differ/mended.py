@@ -1,0 +1,132 @@
+"""Scenes of faults that `make differ` has found and that are mended, in a few records each; `make test` renders them again.
+
+Whoever mends a fault adds the scene that shows it.
+"""
+
+from .record import Record
+
+_WHITE = [0.8, 0.8, 0.8]
+_SUN = [
+    Record("lamp", "Lamp 1", {"type": "SUN", "settings": {"energy": 3.0, "angle": 0.1}}),
+    Record("object", "Lamp 1 object", {"data": "@Lamp 1", "location": [1.0, -2.0, 3.0], "target": [0.0, 0.0, 1.0]}),
+]
+_SKY = [
+    Record("world", "World", {}),
+    Record("node", "World/1", {"tree": "World", "kind": "ShaderNodeBackground", "inputs": {"Color": [0.2, 0.4, 0.8]}}),
+    Record(
+        "node",
+        "World/2",
+        {"tree": "World", "kind": "ShaderNodeOutputWorld", "inputs": {"Surface": ["@World/1", "Background"]}},
+    ),
+]
+
+
+def _frame(**fields):
+    return Record("frame", "Frame", {"bounces": 0, "size": [48, 32], **fields})
+
+
+def _thing(shape, *nodes, displacement="BUMP", mesh=(), **fields):
+    """An object whose material has these nodes, numbered from 1; the last is the output."""
+    mesh = {"shape": shape, "materials": ["@M"], **dict(mesh)}
+    place = {"data": "@Mesh", "location": [0.0, 0.0, 1.0], **fields}
+    head = [
+        Record("material", "M", {"displacement": displacement}),
+        Record("mesh", "Mesh", mesh),
+        Record("object", "Thing", place),
+    ]
+    return head + [Record("node", f"M/{number}", {"tree": "M", **node}) for number, node in enumerate(nodes, 1)]
+
+
+def _node(kind, inputs=None, **props):
+    return {"kind": f"ShaderNode{kind}", "props": props, "inputs": inputs or {}}
+
+
+def _shown(link):
+    return _node("OutputMaterial", {"Surface": link})
+
+
+def _bumped(number, output, *nodes):
+    """A diffuse torus with a bump whose height is an output of a node."""
+    nodes = (
+        *nodes,
+        _node("VectorMath", {"Vector": [f"@M/{number}", output], "Vector_001": [0.5, 0.7, 0.3]}, operation="DOT_PRODUCT"),
+        _node("Bump", {"Distance": 1.0, "Height": [f"@M/{number + 1}", "Value"]}),
+        _node("BsdfDiffuse", {"Color": _WHITE, "Normal": [f"@M/{number + 2}", "Normal"]}),
+        _shown([f"@M/{number + 3}", "BSDF"]),
+    )
+    return [_frame(), *_SUN, *_thing("torus", *nodes, mesh={"smooth": "yes", "uv_maps": ["UVMap"]})]
+
+
+def _alpha(level):
+    nodes = (
+        _node("NewGeometry"),
+        _node(
+            "VectorMath",
+            {"Vector": ["@M/1", "Position"], "Vector_001": [0.01] * 3, "Vector_002": [level] * 3},
+            operation="MULTIPLY_ADD",
+        ),
+        _node("BsdfPrincipled", {"Alpha": ["@M/2", "Vector"]}),
+        _shown(["@M/3", "BSDF"]),
+    )
+    return [_frame(bounces=1), *_SUN, *_SKY, *_thing("cube", *nodes)]
+
+
+SCENES = {
+    "color pass of the last of the transparent layers": [
+        _frame(transparent_bounces=1, passes=["Diffuse Color"]),
+        *_thing("grid", _node("BsdfPrincipled", {"Alpha": 0.1}), _shown(["@M/1", "BSDF"]), location=[0.0, 0.0, 0.0]),
+    ],
+    "empty slot of an object": [
+        _frame(),
+        *_SUN,
+        *_thing("plane", _node("Emission", {"Color": [0.1, 0.6, 0.2]}), _shown(["@M/1", "Emission"]), material=None),
+    ],
+    "tangent in a height": _bumped(1, "Tangent", _node("Tangent", axis="X")),
+    "tangent of a map in a height": _bumped(1, "Tangent", _node("Tangent", direction_type="UV_MAP", uv_map="UVMap")),
+    "normal map in a height": _bumped(1, "Normal", _node("NormalMap", {"Color": [0.8, 0.7, 0.9]}, uv_map="UVMap")),
+    "normal coordinate in a height": _bumped(1, "Normal", _node("TexCoord")),
+    "bump without a height as light": [_frame(), *_thing("cube", _node("Bump"), _shown(["@M/1", "Normal"]))],
+    "bump without a height as displacement": [
+        _frame(passes=["UV"]),
+        *_thing(
+            "cube",
+            _node("Bump"),
+            _node("OutputMaterial", {"Displacement": ["@M/1", "Normal"]}),
+            displacement="DISPLACEMENT",
+            mesh={"uv_maps": ["UVMap"]},
+        ),
+    ],
+    "normal map in the world": [
+        _frame(),
+        Record("world", "World", {}),
+        Record("node", "World/1", {"tree": "World", **_node("NormalMap", space="WORLD")}),
+        Record("node", "World/2", {"tree": "World", **_node("OutputWorld", {"Surface": ["@World/1", "Normal"]})}),
+    ],
+    "alpha above 1": _alpha(1.6),
+    "alpha below 0": _alpha(-0.4),
+    "text as the first object": [
+        _frame(),
+        *_SKY,
+        Record("text", "Text", {}),
+        Record("object", "Thing", {"data": "@Text"}),
+    ],
+    "pass of velvet": [
+        _frame(passes=["Glossy Color"]),
+        *_SKY,
+        *_thing("plane", _node("BsdfSheen", distribution="ASHIKHMIN"), _shown(["@M/1", "BSDF"])),
+    ],
+    "metal that absorbs little": [
+        _frame(),
+        *_SKY,
+        *_thing(
+            "plane",
+            _node("BsdfMetallic", {"IOR": [0.5, 0.3, 0.2], "Extinction": [0.8, 0.4, 0.2]}, fresnel_type="PHYSICAL_CONDUCTOR"),
+            _shown(["@M/1", "BSDF"]),
+        ),
+    ],
+    "guides of a sky in a rough mirror": [
+        _frame(bounces=1, passes=["Denoising Albedo"]),
+        *_SKY,
+        *_thing("plane", _node("BsdfGlossy", {"Color": _WHITE, "Roughness": 0.2}), _shown(["@M/1", "BSDF"]), scale=[7.0] * 3),
+    ],
+}  # fmt: skip
