@@ -32,12 +32,6 @@ def export_light(thing, matrix_world, messages, depsgraph=None, hidden=None, val
         return None
     # A portal emits no light: it only guides Cycles' sampling of the sky.
     if light.type == "AREA" and getattr(getattr(light, "cycles", None), "is_portal", False):
-        if depsgraph is not None and _reads_light_path(depsgraph.scene.world):
-            messages.add(
-                f"{who}: the world's nodes read Light Path, so its light depends on the portal's share of samples in Cycles",
-                "feature:portal of a sky that reads Light Path",
-                Severity.HINT,
-            )
         return None
     _check(thing, light, who, messages)
     kind = _KINDS[light.type]
@@ -174,16 +168,6 @@ def _nodes(light, graph):
         )
         return neutral
     return emission
-
-
-def _reads_light_path(world):
-    return world is not None and world.node_tree is not None and _holds_light_path(world.node_tree)
-
-
-def _holds_light_path(tree):
-    nodes = tree.nodes
-    groups = (node.node_tree for node in nodes if node.type == "GROUP" and node.node_tree is not None)
-    return any(node.type == "LIGHT_PATH" for node in nodes) or any(_holds_light_path(group) for group in groups)
 
 
 def _check(thing, light, who, messages):

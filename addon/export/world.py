@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 
 from ..bindings import snapshot
-from ..bindings.enums import AlphaMode, Coordinate, Environment, Extension, NodeKind
+from ..bindings.enums import AlphaMode, Coordinate, Environment, Extension, NodeKind, PathFact
 from ..messages.severity import Severity
 from .graph import NodeGraph
 from .sockets import output_node
@@ -15,6 +15,8 @@ from .visibility import hidden_from
 
 # In the order of lancer.h.
 CUBE_SIDES = tuple(f"cube_{sign}_{axis}" for axis in "xyz" for sign in ("positive", "negative"))
+# Facts of Light Path that are the same for a sample of the sky and for a scattered ray that meets it.
+_SAME_FOR_SAMPLES = {PathFact.IS_CAMERA, PathFact.IS_VOLUME, PathFact.DEPTH, PathFact.TRANSPARENT_DEPTH}
 
 
 class Sky(NamedTuple):
@@ -46,6 +48,13 @@ def export_world(world, images, depsgraph, messages):
     # An even sky is not sampled as a light in Cycles, and casts shadows in any case.
     elif not getattr(cycles, "use_shadows", True) and isinstance(radiance, snapshot.NodeRef):
         messages.add(f"{who}: a sky that casts no shadows is not supported, it casts them", "feature:sky without shadows")
+    if any(node.kind == NodeKind.LIGHT_PATH and node.option not in _SAME_FOR_SAMPLES for node in graph.nodes):
+        messages.add(
+            f"{who}: its nodes read Light Path: samples of the sky and rays that meet it find other light, and Cycles weighs "
+            "the two by sampling of its own",
+            "feature:sampling of a sky that reads Light Path",
+            Severity.HINT,
+        )
     sky = snapshot.World(
         radiance=radiance,
         ambient=messages.color(own.ambient_color, who, "ambient colour") if own.use_ambient_color else None,
