@@ -115,7 +115,7 @@ def _attribute(graph, site, output):
     if node.attribute_type != "GEOMETRY":
         return _property(graph, node, output)
     if not name:
-        return None
+        return 1.0 if is_alpha else 0.0 if output.identifier == "Fac" else (0.0, 0.0, 0.0)
     if name in _UNREAD or name.endswith(_TANGENTS):
         return None
     if is_alpha:

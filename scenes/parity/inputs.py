@@ -115,13 +115,12 @@ def _map_tiles():
     for mesh in (_with_maps(0), _with_maps(1), bare):
         for name in ("", "Missing", "UVMap", "Second", "Paint"):
             tiles.append((mesh, output_of(_MAP, "UV", {"uv_map": name})))
-            if name:
-                tiles += [(mesh, output_of(_ATTRIBUTE, output, {"attribute_name": name})) for output in _OUTPUTS]
+            tiles += [(mesh, output_of(_ATTRIBUTE, output, {"attribute_name": name})) for output in _OUTPUTS]
         tiles += [(mesh, output_of(_ATTRIBUTE, output, {"attribute_name": "uv"})) for output in _OUTPUTS]
     return tiles
 
 
-@case(size=size_of(3 * (5 + 16 + 4)), bounces=0, quick=True)
+@case(size=size_of(3 * (5 + 20 + 4)), bounces=0, quick=True)
 def maps_by_name(scene):
     """UV Map and Attribute, by names that are empty, missing and given, of maps and of colours."""
     set_board(scene, _map_tiles())
