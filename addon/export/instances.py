@@ -170,9 +170,10 @@ class Instances:
         return table
 
     def _attributes(self, look_of, entries, poll):
-        names = [self._objects.materials.object_attributes(look.slots) for look in self._objects.looks]
-        if not any(names):
+        materials = self._objects.materials
+        if not materials.read_objects:
             return ()
+        names = [materials.object_attributes(look.slots) for look in self._objects.looks]
         rows = {int(entry): names[look] for entry, look in zip(entries, look_of, strict=True)}
         return read_object_attributes(self.depsgraph, rows, self.messages, _POLL_EVERY, poll)
 

@@ -48,6 +48,7 @@ class Materials:
         self.list = []
         self._numbers = {}
         self._attributes = []
+        self._object_attributes = []
 
     def number(self, material, asker):
         """Return the number of a material; None is Blender's default grey. asker is the object's name."""
@@ -58,6 +59,7 @@ class Materials:
             exported = _Exported(_DEFAULT) if material is None else self._read(material, asker)
             self.list.append(exported.material)
             self._attributes.append(exported.attributes)
+            self._object_attributes.append(_object_attributes(exported.material))
         return self._numbers[key]
 
     def _read(self, material, asker):
@@ -73,9 +75,14 @@ class Materials:
         """Whether one of these materials reads an object's colour or random number."""
         return any(_tells_apart(self.list[number]) for number in numbers)
 
+    @property
+    def read_objects(self):
+        """Whether a material reads an ObjectAttribute."""
+        return any(self._object_attributes)
+
     def object_attributes(self, numbers):
         """Return the names of the ObjectAttributes that these materials read."""
-        return frozenset().union(*(_object_attributes(self.list[number]) for number in numbers))
+        return frozenset().union(*(self._object_attributes[number] for number in numbers))
 
     def attributes(self, numbers):
         """Return the names of the mesh attributes that these materials read, for export_mesh's wanted."""

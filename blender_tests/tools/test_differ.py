@@ -23,9 +23,10 @@ def test_scenes_are_the_same_each_time():
 
 
 def test_names_are_of_one_thing():
-    """But for attributes, parents and modifiers, which belong to others."""
+    """But for attributes, properties, parents and modifiers, which belong to others."""
+    belonging = ("attribute", "property", "parent", "modifier")
     for seed in range(200):
-        names = [item.name for item in generator.describe(seed) if item.verb not in ("attribute", "parent", "modifier")]
+        names = [item.name for item in generator.describe(seed) if item.verb not in belonging]
         assert len(set(names)) == len(names), seed
 
 

@@ -215,6 +215,12 @@ class Builder:
         elif switch != "none":
             setattr(bpy.context.view_layer.layer_collection.children[collection.name], switch, True)
 
+    def _property(self, name, fields):
+        places = {"scene": self.scene, "layer": bpy.context.view_layer, "world": self.scene.world}
+        owner = places[fields["owner"]] if fields["owner"] in places else self.find(fields["owner"])
+        if owner is not None:
+            owner[name] = fields["value"]
+
     # ---- settings ----
 
     def _film(self, name, fields):

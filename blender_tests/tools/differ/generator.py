@@ -1,6 +1,6 @@
 """describe(seed): a random small scene of what the add-on supports, as records. Knows nothing of Blender."""
 
-from . import closure_kinds, random_emitters, random_exact, random_frames, random_images, random_lights
+from . import closure_kinds, random_emitters, random_exact, random_frames, random_images, random_lights, random_properties
 from .dice import Dice
 from .random_nodes import Trees
 from .random_things import Things
@@ -48,6 +48,7 @@ def describe(seed):
         *views,
         *trees.records,
     ]
+    everything += random_properties.properties(dice, everything)
     everything = random_exact.make_exact(dice, everything)
     return [record for record in everything if record.fields or record.verb not in ("film", "layer")]
 

@@ -1,13 +1,13 @@
 """Random node trees: from the output upstream, each input left alone, set, or linked to a node that gives a value for it."""
 
-from . import closure_kinds, node_kinds
+from . import closure_kinds, node_kinds, random_properties
 from .record import Record
 
 UV_MAPS = ("UVMap", "Second", "", "Missing")
 # Of each the share: attributes that meshes may have, names with a meaning of their own, and none of either.
 ATTRIBUTES = {
     "Number": 2, "Whole": 2, "Vector": 2, "Color": 2, "Byte": 2, "Flag": 2, "Pair": 2, "Four": 1, "Odd": 1, "UVMap": 2,
-    "generated": 0.5, "uv": 0.5, "vertex_color": 0.5, "position": 0.3, "material_index": 0.2, "Missing": 1,
+    "generated": 0.5, "uv": 0.5, "vertex_color": 0.5, "position": 0.3, "material_index": 0.2, "Missing": 1, "": 0.3,
 }  # fmt: skip
 COLORS = ("Color", "Byte", "Color", "Byte", "", "Missing")
 _ALPHAS = (1.0, 1.0, 0.5, 0.0)
@@ -183,8 +183,10 @@ class Trees:
         elif special == "uv_map":
             props["uv_map"] = dice.pick(UV_MAPS)
         elif special == "attribute":
-            # Without a name the node gives nothing, which Lancer reports.
-            props["attribute_name"] = dice.pick(ATTRIBUTES)
+            kind = dice.pick(random_properties.TYPES)
+            if kind != "GEOMETRY":
+                props["attribute_type"] = kind
+            props["attribute_name"] = dice.pick(ATTRIBUTES if kind == "GEOMETRY" else random_properties.NAMES)
         elif special == "layer":
             props["layer_name"] = dice.pick(COLORS)
         elif special == "same_space":
