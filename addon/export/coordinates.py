@@ -15,6 +15,7 @@ from .properties import view_layer_value
 
 _RADIAL = {"X": 0, "Y": 1, "Z": 2}
 _ALONG_U = 3
+_NOT_IN_WORLD = 1  # flag of TANGENT
 # Names of attributes that Cycles computes itself.
 _UNREAD = {"N", "generated_transform", "pointiness", "random_per_island", "tangent", "tangent_sign"}
 if bpy.app.version < (4, 5):
@@ -175,7 +176,7 @@ def _geometry(graph, site, output):
 def default_tangent(graph):
     """Return the tangent around the object's z axis, Cycles' default for anisotropic surfaces."""
     graph.attributes.add("generated")
-    return graph.emit(NodeKind.TANGENT, option=_RADIAL["Z"])
+    return graph.emit(NodeKind.TANGENT, option=_RADIAL["Z"], flags=_NOT_IN_WORLD)
 
 
 def _tangent(graph, site, output):

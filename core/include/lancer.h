@@ -243,7 +243,8 @@ enum lancer_node_kind {
                                surface before displacement, in object space, 4: give a flat face, too, its normal before
                                displacement. Nodes [first, this) compute the height; they are evaluated at the hit point, to
                                its right and above it */
-  LANCER_NODE_TANGENT = 17, /* option 0, 1, 2: radial about x, y, z of GENERATED; 3: along u of the UV map name */
+  LANCER_NODE_TANGENT = 17, /* option 0, 1, 2: radial about x, y, z of GENERATED; 3: along u of the UV map name; flag 1: 0 in the
+                               world */
   LANCER_NODE_CLAMP = 18,   /* inputs: value, low, high */
   LANCER_NODE_DISPLACEMENT = 19, /* inputs: height, midlevel, scale, normal; option: space of scale, 0 object, 1 world.
                                     Returns an offset in object space */

@@ -112,7 +112,8 @@ template <class F> Value<F> normal_map_node(const Inputs<F> &in, const Site<F> &
 template <class F> Value<F> tangent_node(const Node &node, const Site<F> &site) {
   using V3 = Vector3<F>;
   const F zero(0.0f);
-  if (!site.surface)
+  // The world has directions as generated coordinates, but no tangents along u, and none of Geometry.
+  if (!site.surface && (node.option == 3 || node.flags & 1))
     return solid(V3(zero));
   V3 t;
   auto found = uniform<F>(true);

@@ -68,7 +68,7 @@ template <class F> LANCER_LANE Mixture<F> mix(const Bsdf<F> &bsdf, const Vec3<F>
   for (int i = 0; i < bsdf.count; ++i) {
     const Lobe<F> &lobe = bsdf.lobes[i];
     const MaskOf<F> there = !black(lobe.color);
-    const F weight = select(there, mean(lobe.albedo), zero), share = matt_share(lobe, blended);
+    const F weight = select(there, abs(mean(lobe.albedo)), zero), share = matt_share(lobe, blended);
     mixture.normal += weight * bsdf.frames[lobe.frame].n;
     mixture.all += weight;
     mixture.matt += share * weight;
