@@ -414,6 +414,7 @@ class Rules(IntEnum):
     BLENDER_3 = 0
     BLENDER_4 = 1
     BLENDER_45 = 2
+    BLENDER_52 = 3
 
 
 class MaterialFlag(IntFlag):

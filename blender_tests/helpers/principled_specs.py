@@ -145,6 +145,6 @@ def specs(version):
     """Return (name, node, lobe) for a version of Blender."""
     if version < (4, 0):
         return list(_alone(version, Rules.BLENDER_3)) + list(_layered(Rules.BLENDER_3, _LAYERS_3))
-    rules = Rules.BLENDER_4 if version < (4, 5) else Rules.BLENDER_45
+    rules = Rules.BLENDER_4 if version < (4, 5) else Rules.BLENDER_45 if version < (5, 2) else Rules.BLENDER_52
     layers = _LAYERS_4 if version < (4, 3) else {**_LAYERS_4, **_CHALK}
     return list(_alone(version, rules)) + list(_layered(rules, layers))

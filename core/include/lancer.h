@@ -540,8 +540,8 @@ enum lancer_distribution {
   LANCER_DISTRIBUTION_ASHIKHMIN_SHIRLEY = 2,
   LANCER_DISTRIBUTION_MULTI_GGX = 3
 };
-/* The Blender versions whose definitions hold for lobes of nodes: 3.x, 4.0 to 4.4, 4.5 and newer. */
-enum lancer_rules { LANCER_RULES_BLENDER_3 = 0, LANCER_RULES_BLENDER_4 = 1, LANCER_RULES_BLENDER_45 = 2 };
+/* The Blender versions whose definitions hold for lobes of nodes: 3.x, 4.0 to 4.4, 4.5 to 5.1, 5.2 and newer. */
+enum lancer_rules { LANCER_RULES_BLENDER_3 = 0, LANCER_RULES_BLENDER_4 = 1, LANCER_RULES_BLENDER_45 = 2, LANCER_RULES_BLENDER_52 = 3 };
 
 /* The Principled BSDF's inputs under their newest names. Before 4.0 some have another meaning: specular is the level over
  * 0.08, specular_tint[0] and sheen_tint[0] mix in the base colour's hue, coat is four times the layer's weight;

@@ -100,6 +100,19 @@ template <class F> Vec3<F> Bsdf<F>::albedo() const {
   return total;
 }
 
+// Returns the colour of the transmitted light for the passes: the share that a smooth surface lets through; since 5.2, the
+// share that the facets do not reflect in the mean.
+template <class F> LANCER_LANE Vec3<F> shown_through(const Lobe<F> &lobe) {
+  using V = Vec3<F>;
+  if (lobe.rules < Rules::Blender52 || !is_facets(lobe) || !splits(lobe))
+    return lobe.through;
+  const V reflected = lobe.albedo - lobe.through, none(F(0.0f));
+  const auto channel = [](F whole, F back, F tint) { return select(tint > 0.0f, whole - back / tint, whole); };
+  const V kept(channel(lobe.color.x, reflected.x, lobe.reflection.x), channel(lobe.color.y, reflected.y, lobe.reflection.y),
+               channel(lobe.color.z, reflected.z, lobe.reflection.z));
+  return select(black(lobe.through), none, lobe.transmission * max(kept, none));
+}
+
 template <class F> Vec3<F> Bsdf<F>::shown(Component component) const {
   V total(F(0.0f));
   for (int i = 0; i < count; ++i) {
@@ -108,7 +121,7 @@ template <class F> Vec3<F> Bsdf<F>::shown(Component component) const {
     if (lobe.component == component)
       total = select(there, total + select(lobe.shown > 0.0f, lobe.shown * lobe.color, lobe.albedo - lobe.through), total);
     if (component == Component::Transmission)
-      total = select(there, total + lobe.through, total);
+      total = select(there, total + shown_through(lobe), total);
   }
   return total;
 }

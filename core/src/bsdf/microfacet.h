@@ -205,7 +205,7 @@ LANCER_LANE Vec3<F> reflected_albedo(const MicrofacetPlan<F> &plan, F cos_o, con
     mean = (lobe.f0 + (lobe.f90 - lobe.f0) * tables.mix(plan, cos_o)) * lobe.reflection;
   } else if (lobe.fresnel == FresnelKind::F82) {
     mean = lobe.f0 + (V(F(1.0f)) - lobe.f0) * tables.mix(plan, cos_o);
-  } else if (lobe.fresnel == FresnelKind::Dielectric && lobe.rules == Rules::Blender45) {
+  } else if (lobe.fresnel == FresnelKind::Dielectric && lobe.rules >= Rules::Blender45) {
     const F f0 = f0_of_ior(lobe.ior);
     mean = select(lobe.ior > 1.0f, (f0 + (1.0f - f0) * tables.mix(plan, cos_o)) * lobe.reflection, mean);
   }

@@ -148,7 +148,7 @@ LANCER_LANE F bump_factor(const Lobe<F> &lobe, const Vec3<F> &n, const Vec3<F> &
   const F one(1.0f), cos_tilt = dot(n, ns);
   const bool smooth_end = ends_smoothly(lobe);
   F kept = one;
-  if (lobe.rules != Rules::Blender45 && smooth_end) {
+  if (lobe.rules < Rules::Blender45 && smooth_end) {
     kept = chiang_shadowing(cos_ns, cos_n, cos_tilt, correction);
   } else {
     if (smooth_end && correction)

@@ -105,7 +105,7 @@ LANCER_LANE MicrofacetPlan<F> plan_layer(PrincipledLayer layer, const LobeInputs
     lobe = make_microfacet(Scatter::Reflect, 0, one, alpha, alpha, in.rules);
     set_dielectric(lobe, max(in.coat_ior, F(1.0f)));
     // From Blender 4.5 on the coat preserves energy.
-    preserving = in.rules == Rules::Blender45;
+    preserving = in.rules >= Rules::Blender45;
     break;
   }
   case PrincipledLayer::Glass: {

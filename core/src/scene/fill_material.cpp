@@ -143,14 +143,14 @@ void check_lobe(const std::string &object, const lancer_lobe &lobe, uint32_t i) 
   check("kind", lobe.kind, LANCER_LOBE_KIND_COUNT);
   check("distribution", lobe.distribution, LANCER_DISTRIBUTION_MULTI_GGX + 1);
   check("option", lobe.option, lobe.kind == LANCER_CONDUCTOR ? 3 : 2);
-  check("rules", lobe.rules, LANCER_RULES_BLENDER_45 + 1);
+  check("rules", lobe.rules, LANCER_RULES_BLENDER_52 + 1);
   if (lobe.kind != LANCER_PRINCIPLED)
     return;
   if (!lobe.principled)
     bad_argument(where + "no record: principled is NULL");
   check("distribution", lobe.principled->distribution, LANCER_DISTRIBUTION_MULTI_GGX + 1);
   check("option", lobe.principled->option, 2);
-  check("rules", lobe.principled->rules, LANCER_RULES_BLENDER_45 + 1);
+  check("rules", lobe.principled->rules, LANCER_RULES_BLENDER_52 + 1);
 }
 
 // Collects all parameters of a lobe.
