@@ -122,7 +122,7 @@ def _add_normals(mesh, lean):
 _TYPES = {
     "FLOAT": ("value", 1), "INT": ("value", 1), "INT8": ("value", 1), "BOOLEAN": ("value", 1), "FLOAT2": ("vector", 2),
     "FLOAT_VECTOR": ("vector", 3), "FLOAT_COLOR": ("color", 4), "BYTE_COLOR": ("color", 4), "FLOAT4": ("vector", 4),
-    "QUATERNION": ("value", 4), "FLOAT4X4": ("value", 16), "INT16_2D": ("value", 2), "INT32_2D": ("value", 2),
+    "QUATERNION": ("value", 4), "INT16_2D": ("value", 2), "INT32_2D": ("value", 2),
 }  # fmt: skip
 
 
@@ -142,6 +142,9 @@ def build_attribute(mesh, name, fields):
         values = np.floor(4.0 * values).astype(np.int32)
     elif kind == "BOOLEAN":
         values = values < 0.5
+    elif kind == "QUATERNION":
+        # Rotations are of unit length: Blender mixes no others.
+        values = (values / np.linalg.norm(values, axis=1, keepdims=True)).astype(np.float32)
     else:
         values = values.astype(np.float32)
     attribute.data.foreach_set(field, values.ravel())

@@ -17,7 +17,8 @@ _ATTRIBUTES = {
     "Flag": ("BOOLEAN",),
     "Pair": ("FLOAT2",),
     "Four": ("QUATERNION", "FLOAT4"),
-    "Odd": ("FLOAT4X4", "INT16_2D", "INT32_2D"),
+    # Blender 4 crashes by itself where a modifier meets an attribute of type FLOAT4X4.
+    "Odd": ("INT16_2D", "INT32_2D"),
 }
 _RAYS = ("camera", "diffuse", "glossy", "transmission", "shadow")
 
