@@ -10,6 +10,8 @@ HAS_INSTANCES = bpy.app.version >= (4, 5)
 _UNUSED = 2**31 - 1  # in DepsgraphObjectInstance.persistent_id
 # Types that Blender converts to a colour.
 _TYPES = {kind: how for kind, how in TYPES.items() if kind not in ("FLOAT4", "QUATERNION")}
+# Parts of a geometry, and the type of object that shows each as itself.
+_PARTS = {"mesh": "MESH", "curves": "CURVES", "pointcloud": "POINTCLOUD", "volume": "VOLUME", "grease_pencil": "GREASEPENCIL"}
 _NOT_STORED = "position"  # Blender adds it to the points that stand for instances
 
 
@@ -58,10 +60,9 @@ class _Layer:
             self._below[number] = _layer_of(found)
         return self._below[number]
 
-    def places(self, number, thing):
-        """Whether the row of an id places that object. If not, the number is that of a part of the geometry itself."""
-        found = self.reference(self.row(number)) if self._repeated or number in self._rows else None
-        return isinstance(found, bpy.types.Object) and found.original == thing.original
+    def parts(self, kind):
+        """Return the number of other parts of the geometry that Blender shows as instances. kind: the type of their object."""
+        return sum(getattr(self._geometry, part, None) is not None for part, own in _PARTS.items() if own != kind)
 
     def value(self, name, row):
         """Return (x, y, z, alpha) of an attribute of a row; None if there is none that Blender converts to a colour."""
@@ -103,7 +104,7 @@ class InstanceLayers:
         """Return [(_Layer, row), ...] of an instance, the innermost first; raise Unreadable if they are not found."""
         found = []
         numbers = [number for number in entry.persistent_id if number != _UNUSED]
-        self._follow(entry.parent, numbers, entry.instance_object, found)
+        self._follow(entry.parent, numbers, found)
         return found[::-1]
 
     def _layer(self, thing):
@@ -112,15 +113,15 @@ class InstanceLayers:
             self._layers[key] = _layer_of(thing.evaluated_geometry()) if makes_instances(thing) else None
         return self._layers[key]
 
-    def _follow(self, thing, numbers, shown, found):
-        """Add the layers below an object. numbers: one for each step from the entry, the innermost first. shown: its object."""
+    def _follow(self, thing, numbers, found):
+        """Add the layers below an object. numbers: one for each step from the entry, the innermost first."""
         layer = self._layer(thing)
         if layer is not None:
-            self._descend(layer, numbers, shown, found)
+            self._descend(layer, thing.type, numbers, found)
         elif len(numbers) > 1:
             members = self._members(thing, numbers)
             if len(members) == 1:
-                self._follow(members[0], numbers[:-1], shown, found)
+                self._follow(members[0], numbers[:-1], found)
             elif members:
                 raise Unreadable
 
@@ -136,21 +137,31 @@ class InstanceLayers:
             raise Unreadable
         return []
 
-    def _descend(self, layer, numbers, shown, found):
-        """Add the layers of a geometry and of those inside it."""
-        while layer is not None and numbers and (len(numbers) > 1 or layer.places(numbers[0], shown)):
+    def _descend(self, layer, kind, numbers, found):
+        """Add the layers of a geometry and of those inside it. kind: the type of the object that has the geometry."""
+        while layer is not None and numbers:
+            # Beside other parts, the instances have one number more: that of the part after the last.
+            parts = layer.parts(kind)
+            if parts:
+                if numbers[-1] < parts:
+                    return
+                numbers = numbers[:-1]
+            if not numbers:
+                raise Unreadable
             row = layer.row(numbers[-1])
-            numbers = numbers[:-1]
+            numbers, kind = numbers[:-1], ""
             found.append((layer, row))
             inner = layer.reference(row)
             if isinstance(inner, bpy.types.Collection):
                 # Each visible object of a collection has two numbers: its own, and that of its instances.
                 if len(numbers) > 1:
                     visible = [member for member in inner.all_objects if not getattr(member, self._hidden)]
-                    self._follow(visible[numbers[-1] // 2], numbers[:-1], shown, found)
+                    if numbers[-1] // 2 >= len(visible):
+                        raise Unreadable
+                    self._follow(visible[numbers[-1] // 2], numbers[:-1], found)
                 return
             if isinstance(inner, bpy.types.Object):
                 if numbers:
-                    self._follow(inner, numbers, shown, found)
+                    self._follow(inner, numbers, found)
                 return
             layer = inner

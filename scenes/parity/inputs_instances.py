@@ -122,6 +122,19 @@ def _of_geometry(scene, row):
     _host(scene, maker.end(maker.store(made, "given", maker.by_index(0.1, 0.1))), 0, row)
 
 
+def _beside_a_mesh(scene, row):
+    """Instances in one geometry with a mesh, which they hide, inside another instance."""
+    maker = _Maker()
+    grid = maker.add("GeometryNodeMeshGrid", Size_X=1, Size_Y=1, Vertices_X=2, Vertices_Y=2).outputs[0]
+    below = maker.add("GeometryNodeTransform", Geometry=grid, Translation=(0, 0, -1)).outputs[0]
+    made = maker.instances(maker.points, maker.source(_source(scene)))
+    made = maker.store(made, "given", maker.by_index(0.1, 0.1))
+    both = maker.add("GeometryNodeJoinGeometry")
+    for geometry in (made, below):
+        maker.tree.links.new(geometry, both.inputs[0])
+    _host(scene, maker.end(maker.instances(maker.line(1, 1), both.outputs[0])), 0, row)
+
+
 def _nested(scene, row):
     """Two instances of four: the inner attribute comes first."""
     for name, inner_has_it in (("given", True), ("outer", False)):
@@ -179,15 +192,15 @@ def _by_geometry(scene, host):
     host.location = 0, -60, 0
 
 
-@case(size=size_of(12 * _WIDTH), bounces=0, since=_SINCE, quick=True)
+@case(size=size_of(13 * _WIDTH), bounces=0, since=_SINCE, quick=True)
 def attribute_of_instance(scene):
     """Of each type and at each depth, in rows of instances."""
     row = 2
     _types(scene, 0)
-    for make in (_numbered, _with_ids, _with_equal_ids, _of_geometry, _nested, _of_collection):
+    for make in (_numbered, _with_ids, _with_equal_ids, _of_geometry, _beside_a_mesh, _nested, _of_collection):
         make(scene, row)
         row += 2 if make is _nested else 1
     for wrap in (_by_collection, _by_vertex, _by_geometry):
         _made_below(scene, row, wrap)
         row += 1
-    view_board(scene, 12 * _WIDTH)
+    view_board(scene, 13 * _WIDTH)
