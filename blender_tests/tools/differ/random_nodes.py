@@ -13,6 +13,10 @@ COLORS = ("Color", "Byte", "Color", "Byte", "", "Missing")
 _ALPHAS = (1.0, 1.0, 0.5, 0.0)
 _DEEPEST = 4
 
+WORLDS = ("World", "Other world")
+# Cycles reads the transform of an object there, and crashes now and then.
+_UNDEFINED_IN_WORLDS = {"ShaderNodeNormalMap", "ShaderNodeTangent", "ShaderNodeBump"}
+
 
 class Trees:
     """Writes records of nodes; groups are written before the trees that use them."""
@@ -68,7 +72,8 @@ class Trees:
         """A link to a node that gives a value."""
         if self.dice.chance(0.08) and depth < 3:
             return self._passed_on(tree, self._group(tree, wanted, depth))
-        kinds = {name: kind.weight for name, kind in node_kinds.VALUES.items()}
+        left_out = _UNDEFINED_IN_WORLDS if tree in WORLDS else ()
+        kinds = {name: kind.weight for name, kind in node_kinds.VALUES.items() if name not in left_out}
         return self._passed_on(tree, self._node(tree, self.dice.pick(kinds), wanted, depth, node_kinds.VALUES))
 
     def _passed_on(self, tree, link):
@@ -105,6 +110,7 @@ class Trees:
         if type_ == "s":
             return self._shader(tree, depth + 1) if dice.chance(0.93) else None
         if type_ == "n":
+            can_link = can_link and tree not in WORLDS
             return self._at(tree, dice.pick(node_kinds.NORMALS), "v", depth) if can_link and dice.chance(0.12) else None
         if type_ == "t":
             return self._at(tree, dice.pick(node_kinds.PLACES), "v", depth) if can_link and dice.chance(0.6) else None
