@@ -8,6 +8,7 @@ from ..bindings.shading import NodeRef
 from ..bindings.structs import PARAMETERS, Principled
 from .arithmetic import is_constant
 from .distributions import read_distribution
+from .old_ranges import tell_range
 from .sockets import DIFFUSE_OPTION, PRINCIPLED, RULES, SMALLEST_IOR, find
 
 _WHITE = (1.0, 1.0, 1.0)
@@ -15,6 +16,7 @@ _WHITE = (1.0, 1.0, 1.0)
 _LAYERS = ("coat", "sheen", "anisotropic")
 # Weights that the core accepts beyond 1 and Blender clamps to 0 to 1.
 _SHARES = ("coat", "sheen")
+_UNCLAMPED = ("metallic", "roughness", "anisotropic")
 _FILM = ("thin_film", "the surface has no film")
 _WALL = ("thin_wall", "the surface bounds a solid")
 
@@ -49,6 +51,8 @@ def read_principled(surface, site, weight):
             values[name] = surface.normal(site, PRINCIPLED[name])
         elif kind == "share" or name in _SHARES:
             values[name] = number(name, default, 0.0, 1.0)
+            if name in _UNCLAMPED:
+                tell_range(graph, site, PRINCIPLED[name][0], values[name])
         elif kind == "amount":
             values[name] = number(name, default, 0.0)
         elif kind == "turns":

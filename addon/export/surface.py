@@ -10,6 +10,7 @@ from .arithmetic import is_constant, triple
 from .closures import CLOSURES, read_unknown
 from .coordinates import default_tangent
 from .graph import NodeGraph
+from .old_ranges import tell_length
 from .sockets import RULES, output_node
 from .walk import Site
 
@@ -141,7 +142,9 @@ class Surface:
         self._lobes.append(lobe)
 
     def normal(self, site, names=("Normal",)):
-        return self.graph.linked(site, names, self.graph.normal)
+        normal = self.graph.linked(site, names, self.graph.normal)
+        tell_length(self.graph, site, normal)
+        return normal
 
     def tangent(self, site, anisotropy):
         """Return the tangent, which only anisotropic lobes need."""

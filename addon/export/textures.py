@@ -1,5 +1,6 @@
 """Image nodes: the image, its coordinates, interpolation and extension."""
 
+import bpy
 import numpy as np
 
 from ..bindings import snapshot
@@ -28,6 +29,8 @@ _INTERPOLATION = {
 _STRAIGHT_COLOR = 256
 _AXES = {"NONE": None, "X": 0, "Y": 1, "Z": 2}
 _MAGENTA = (1.0, 0.0, 1.0)
+# Before 5.2 Cycles clips the one texel that stands for a missing picture as any other.
+_CLIPS_MISSING = bpy.app.version < (5, 2)
 _MISSING = snapshot.Image("missing", np.array(((_MAGENTA,),), np.float32), alpha=AlphaMode.STRAIGHT)
 
 
@@ -36,9 +39,8 @@ def _image_texture(graph, site, output):
     is_alpha = output.identifier == "Alpha"
     found = _picture(graph, site)
     if found is None:
-        if node.extension != "CLIP" or graph.images is None:
+        if not (_CLIPS_MISSING and node.extension == "CLIP") or graph.images is None:
             return 1.0 if is_alpha else _MAGENTA
-        # Cycles clips the one texel that stands for a picture, too.
         found = graph.images.repeat([_MISSING]), 1
     first, count = found
     vector = graph.linked(site, ("Vector",), None)
