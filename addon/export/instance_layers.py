@@ -24,12 +24,18 @@ def makes_instances(thing):
     return any(modifier.type == "NODES" for modifier in thing.modifiers)
 
 
+def steps(entry):
+    """Return the numbers of the instances that lead to an entry, the innermost first."""
+    return [number for number in entry.persistent_id if number != _UNUSED]
+
+
 class _Layer:
     """The instances of one geometry, a row for each."""
 
     def __init__(self, geometry, points):
         # Blender frees the points with the geometry.
         self._geometry = geometry
+        self._parts = [own for part, own in _PARTS.items() if getattr(geometry, part, None) is not None]
         self._attributes = points.attributes
         self._references = geometry.instance_references()
         self._of_row = self._read(".reference_index").astype(int).ravel().tolist()
@@ -62,7 +68,7 @@ class _Layer:
 
     def parts(self, kind):
         """Return the number of other parts of the geometry that Blender shows as instances. kind: the type of their object."""
-        return sum(getattr(self._geometry, part, None) is not None for part, own in _PARTS.items() if own != kind)
+        return sum(own != kind for own in self._parts)
 
     def value(self, name, row):
         """Return (x, y, z, alpha) of an attribute of a row; None if there is none that Blender converts to a colour."""
@@ -103,8 +109,7 @@ class InstanceLayers:
     def of(self, entry):
         """Return [(_Layer, row), ...] of an instance, the innermost first; raise Unreadable if they are not found."""
         found = []
-        numbers = [number for number in entry.persistent_id if number != _UNUSED]
-        self._follow(entry.parent, numbers, found)
+        self._follow(entry.parent, steps(entry), found)
         return found[::-1]
 
     def _layer(self, thing):

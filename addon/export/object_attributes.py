@@ -1,10 +1,12 @@
 """Values of the Attribute nodes that read objects and instancers: columns of the instance table, and constants of lamps."""
 
+import functools
+
 import bpy
 import numpy as np
 
 from ..bindings.snapshot import ObjectAttribute
-from .instance_layers import HAS_INSTANCES, InstanceLayers, Unreadable, makes_instances
+from .instance_layers import HAS_INSTANCES, InstanceLayers, Unreadable, makes_instances, steps
 from .properties import object_value, property_value
 
 _OF_OBJECT, _OF_INSTANCER = "object:", "instancer:"
@@ -45,7 +47,7 @@ class AttributeReader:
     def layers(self, entry, names):
         """Return the layers of Geometry Nodes that an instance belongs to, the innermost first."""
         if self._layers is None:
-            if names and makes_instances(entry.parent):
+            if names and self._may_be_made(entry):
                 self._tell(entry.parent, "this Blender does not expose attributes of Geometry Nodes' instances")
             return ()
         try:
@@ -54,6 +56,15 @@ class AttributeReader:
             if names:
                 self._tell(entry.parent, "Blender does not expose the attributes of its instances' own instances")
             return ()
+
+    def _may_be_made(self, entry):
+        """Whether Geometry Nodes may have made an instance, or an instance inside it."""
+        is_deep = len(steps(entry)) > (1 if entry.particle_system is None else 2)
+        return makes_instances(entry.parent) or is_deep and self._has_makers
+
+    @functools.cached_property
+    def _has_makers(self):
+        return any(makes_instances(thing) for thing in bpy.data.objects)
 
     def _tell(self, instancer, text):
         text = f"object '{instancer.name}': {text}, Attribute nodes read properties instead"

@@ -41,6 +41,17 @@ def test_attributes_that_cycles_computes_are_told(which, tmp_path):
 
 
 @pytest.mark.parametrize("which", [MODULE, PROGRAM])
+def test_attributes_of_instances_that_blender_hides_are_told(which, tmp_path):
+    """Before 4.5 Blender exposes none; later the instancer must be known."""
+    got = blenders.run(which, tmp_path, "stand_in_cases", "attributes_of_instances")
+    got.pop("console")
+    hidden = {"two below vertices"} | ({"nodes", "group"} if which == PROGRAM else set())
+    said = "this Blender does not expose" if which == PROGRAM else "Blender does not expose the attributes of its instances'"
+    for name, messages in got.items():
+        assert len(messages) == (name in hidden) and all(said in text for text in messages), (name, messages)
+
+
+@pytest.mark.parametrize("which", [MODULE, PROGRAM])
 def test_light_between_facets_is_told_where_it_is_computed_differently(which, tmp_path):
     got = blenders.run(which, tmp_path, "stand_in_cases", "facets")
     got.pop("console")

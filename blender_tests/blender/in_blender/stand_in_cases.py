@@ -1,6 +1,8 @@
 """Substitutes for inputs and features that Lancer lacks, and the messages about them."""
 
 import bpy
+import stage
+from export_cases import export_told
 from material_cases import Tree, answer
 
 # {input: first Blender that has it}
@@ -47,6 +49,55 @@ def computed_attributes():
         tree.tree.links.new(color.outputs["Color"], node.inputs["Color"])
         tree.show(node.outputs[0])
         result[name] = answer(tree.material)[name]["messages"]
+    return result
+
+
+def _made(collection, shown):
+    """Return an object whose Geometry Nodes instance a cube with that material."""
+    cube = stage.cube(1.0, shown)
+    tree = bpy.data.node_groups.new("Maker", "GeometryNodeTree")
+    if hasattr(tree, "interface"):
+        tree.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
+    else:
+        tree.outputs.new("NodeSocketGeometry", "Geometry")
+    source, output = tree.nodes.new("GeometryNodeObjectInfo"), tree.nodes.new("NodeGroupOutput")
+    source.inputs["Object"].default_value, source.inputs["As Instance"].default_value = cube, True
+    tree.links.new(source.outputs["Geometry"], output.inputs[0])
+    maker = bpy.data.objects.new("Maker", bpy.data.meshes.new("Maker"))
+    maker.modifiers.new("Maker", "NODES").node_group = tree
+    collection.objects.link(maker)
+    return maker
+
+
+def attributes_of_instances():
+    """Return {instancer: messages} of a cube with an Attribute node, as Geometry Nodes and others show it."""
+    result = {}
+    for name in ("nodes", "group", "vertices", "two below vertices"):
+        scene = stage.empty()
+        tree = Tree("Read")
+        color, node = tree.node("Attribute", attribute_type="INSTANCER", attribute_name="heat"), tree.node("Emission")
+        tree.tree.links.new(color.outputs["Color"], node.inputs["Color"])
+        shown = tree.show(node.outputs[0])
+        instancer = bpy.data.objects.new(name, None)
+        scene.collection.objects.link(instancer)
+        if name == "nodes":
+            _made(scene.collection, shown)
+        elif name == "group":
+            instancer.instance_type, instancer.instance_collection = "COLLECTION", bpy.data.collections.new("Group")
+            _made(instancer.instance_collection, shown)
+        else:
+            point = bpy.data.meshes.new("Point")
+            point.from_pydata([(0, 0, 0)], [], [])
+            seat = bpy.data.objects.new("Seat", point)
+            scene.collection.objects.link(seat)
+            seat.instance_type = "VERTS"
+            if name == "vertices":
+                stage.cube(1.0, shown).parent = seat
+            else:
+                for _ in range(2):
+                    _made(scene.collection, shown).parent = seat
+        told = export_told()[1].lines()
+        result[name] = [text for text in told if "Attribute nodes" in text]
     return result
 
 
