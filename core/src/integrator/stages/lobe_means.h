@@ -24,9 +24,6 @@ template <class F> LANCER_LANE Vec3<F> mean_normal(const Bsdf<F> &bsdf, bool dif
 // A lobe of at most this alpha is treated as a mirror.
 inline constexpr float kMirrorLike = 0.075f;
 
-// Cycles drops lobes of less weight.
-inline constexpr float kLeastWeight = 1e-5f;
-
 template <class F> LANCER_LANE F smooth_step(F x) {
   const F t = clamp01(x);
   return t * t * (3.0f - 2.0f * t);
@@ -70,7 +67,7 @@ template <class F> LANCER_LANE Mixture<F> mix(const Bsdf<F> &bsdf, const Vec3<F>
   }
   for (int i = 0; i < bsdf.count; ++i) {
     const Lobe<F> &lobe = bsdf.lobes[i];
-    const MaskOf<F> there = abs(mean(lobe.color)) >= F(kLeastWeight);
+    const MaskOf<F> there = !black(lobe.color);
     const F weight = select(there, abs(mean(lobe.albedo)), zero), share = matt_share(lobe, blended);
     mixture.normal += weight * bsdf.frames[lobe.frame].n;
     mixture.all += weight;
