@@ -21,7 +21,7 @@ def glass_owner(scene):
 
 
 def export_settings(depsgraph, passes, world, messages):
-    """Return the snapshot.Settings of a depsgraph. passes: of enums.Pass; world: the evaluated world, or None."""
+    """Return the snapshot.Settings of a depsgraph. passes: of enums.Pass; world: the layer's evaluated world, or None."""
     scene = depsgraph.scene
     own = scene.lancer
     render = scene.render
@@ -61,18 +61,26 @@ def export_settings(depsgraph, passes, world, messages):
         passes=tuple(sorted({Pass.COMBINED, *passes})),
         threads=render.threads if render.threads_mode == "FIXED" else default_threads,
         accelerator=Accelerator[own.accelerator],
-        **_world_settings(world, messages),
+        **_occlusion(world, messages),
+        # A layer with another world keeps the mist of the scene's, as in Cycles.
+        **_mist(scene.world and scene.world.evaluated_get(depsgraph), messages),
     )
 
 
-def _world_settings(world, messages):
-    """Return the settings of the mist and ambient occlusion passes; without a world, Cycles' defaults."""
+def _occlusion(world, messages):
+    """Return the setting of the ambient occlusion pass; without a world, Cycles' default."""
     if world is None:
-        return {"occlusion_distance": 10.0, "mist_start": 0.0, "mist_depth": 100.0, "mist_falloff": 1.0}
-    who = f"world '{world.name}'"
-    mist = world.mist_settings
+        return {"occlusion_distance": 10.0}
+    distance = messages.number(world.light_settings.distance, f"world '{world.name}'", "occlusion distance", 10.0, 0.0)
+    return {"occlusion_distance": distance}
+
+
+def _mist(world, messages):
+    """Return the settings of the mist pass; without a world, Cycles' defaults."""
+    if world is None:
+        return {"mist_start": 0.0, "mist_depth": 100.0, "mist_falloff": 1.0}
+    who, mist = f"world '{world.name}'", world.mist_settings
     return {
-        "occlusion_distance": messages.number(world.light_settings.distance, who, "occlusion distance", 10.0, 0.0),
         "mist_start": messages.number(mist.start, who, "mist start", 5.0, 0.0),
         "mist_depth": messages.number(mist.depth, who, "mist depth", 25.0, 0.0),
         "mist_falloff": _MIST_FALLOFFS[mist.falloff],

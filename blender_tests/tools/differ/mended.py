@@ -129,4 +129,17 @@ SCENES = {
         *_SKY,
         *_thing("plane", _node("BsdfGlossy", {"Color": _WHITE, "Roughness": 0.2}), _shown(["@M/1", "BSDF"]), scale=[7.0] * 3),
     ],
+    "occlusion of a holdout object": [
+        _frame(passes=["Ambient Occlusion"]),
+        *_thing("plane", _node("BsdfPrincipled", {"Alpha": 0.9}), _shown(["@M/1", "BSDF"]), settings={"is_holdout": True}),
+    ],
+    "mist of a layer with another world": [
+        _frame(passes=["Mist", "Ambient Occlusion"]),
+        Record("world", "World", {"mist": {"start": 1.0, "depth": 6.0}, "occlusion_distance": 0.2}),
+        Record("world", "Other", {"apart": True, "mist": {"start": 3.0, "depth": 2.0}, "occlusion_distance": 1.0}),
+        *_thing("cube", _node("BsdfDiffuse"), _shown(["@M/1", "BSDF"])),
+        Record("mesh", "Floor", {"shape": "plane"}),
+        Record("object", "Floor object", {"data": "@Floor", "scale": [5.0] * 3}),
+        Record("layer", "Layer", {"world_override": "@Other"}),
+    ],
 }  # fmt: skip
