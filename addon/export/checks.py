@@ -59,6 +59,9 @@ def check_view_layer(scene, view_layer, messages):
         messages.add(f"{who}: these passes are not supported: {', '.join(names)}", severity=Severity.LEFT_OUT)
     cycles = getattr(view_layer, "cycles", None)
     if getattr(cycles, "denoising_store_passes", False):
+        if scene.render.film_transparent and view_layer.use_pass_environment:
+            text = "behind a transparent film Cycles adds the sky to Denoising Albedo if the pass Environment is on"
+            messages.add(f"{who}: {text}, here it is never added")
         for name in _GUIDES_SHAPED_BY:
             if not getattr(cycles, name, True):
                 title = cycles.bl_rna.properties[name].name

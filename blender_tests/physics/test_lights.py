@@ -330,10 +330,12 @@ def test_export_under_transforms(which, tmp_path):
     """A flattened lamp lights like Cycles' lamps, measured in 3.4.1, 4.2, 4.5, 5.0.1 and 5.2.3; a message names shears."""
     got = blenders.run(which, tmp_path, "light_cases", "transforms")
     new = got["version"] >= [4, 0]
-    dark = {"SPOT flat z", "SUN flat z", "AREA flat x", "AREA flat y"}
-    dark |= {"SPOT flat x", "SPOT flat y", "AREA flat z"} if new else set()
+    dark = {"SPOT flat z", "SUN flat z", "DISK flat z", "AREA flat x", "AREA flat y"}
+    dark |= {"SPOT flat x", "SPOT flat y", "BALL flat x", "BALL flat y", "AREA flat z"} if new else {"BALL flat z"}
     told = {"AREA flat x": "area is zero", "AREA flat y": "area is zero", "AREA sheared": "true shape"}
-    told |= {"SPOT sheared": "all of it"} if new else {"AREA flat z": "rays meet it"}
+    told |= {"SPOT sheared": "all of it", "BALL sheared": "all of it"} if new else {"AREA flat z": "rays meet it"}
+    told |= {"BALL flat z": "to all sides"} if new else {}
+    told |= {"DISK flat z": "arbitrary direction"} if got["version"] >= [5, 0] else {}
     for name, (matrix, share, messages) in got["lamps"].items():
         assert (matrix is None) == (name in dark), name
         word = told.get(name, "gives no light" if name in dark else None)
@@ -345,6 +347,14 @@ def test_export_under_transforms(which, tmp_path):
             assert np.allclose(np.transpose(matrix) @ matrix, np.eye(3), atol=1e-6), name
         if name not in dark:
             assert np.isclose(share, 1.0, rtol=1e-6), (name, share)
+
+
+@pytest.mark.parametrize("which", [MODULE, PROGRAM])
+def test_lamps_hidden_from_glass_are_reported(which, tmp_path):
+    """Since 4.0 Cycles' samples of lamps obey no switch at rough glass; at smooth glass it takes no samples."""
+    got = blenders.run(which, tmp_path, "light_cases", "hidden_from_glass")
+    told = ["light 'Hidden': its ray visibility hides it from glass, which Cycles' samples of lamps ignore"]
+    assert got["messages"] == {"Glass 0.3": told if got["version"] >= [4, 0] else [], "Glass 0.0": [], "Glossy 0.3": []}
 
 
 @pytest.mark.parametrize("which", [MODULE, PROGRAM])

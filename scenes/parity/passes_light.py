@@ -171,6 +171,16 @@ def pass_denoising(scene):
     _still_life(scene)
 
 
+@case(passes=("Denoising Depth",), transparent_bounces=1, bounces=1, size=(48, 32), quick=True)
+def pass_denoising_last_surface(scene):
+    """Three panes that fill the view; a path that may pass one of them ends at the second, which guides no denoiser."""
+    clear = shader("ShaderNodeBsdfPrincipled", Alpha=0.08)
+    for index in range(3):
+        parts.place(scene, f"Pane {index}", parts.plane_mesh("Pane", 40.0), clear, (0, 2.0 * index, 0), rotation=(1.5708, 0, 0))
+    sky(scene)
+    camera(scene)
+
+
 @case(passes=("Denoising Depth",))
 def pass_denoising_depth(scene):
     """Along the ray, from the camera's near clipping distance."""

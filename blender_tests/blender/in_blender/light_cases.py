@@ -2,6 +2,7 @@
 
 import bpy
 import stage
+from export_cases import export_told
 from mathutils import Euler, Matrix
 
 from addon.export.lights import export_light
@@ -73,8 +74,13 @@ def transforms():
     sheared[0][1], sheared[0][2] = 0.75, 0.5
     depsgraph = bpy.context.evaluated_depsgraph_get()
     result = {}
-    for kind in ("POINT", "SPOT", "SUN", "AREA"):
-        thing = stage.light(kind, location=(0, 0, 0))
+    lamps = {"POINT": {}, "SPOT": {}, "SUN": {}, "AREA": {}, "BALL": {"shadow_soft_size": 0.3}, "DISK": {"angle": 0.3}}
+    for kind, fields in lamps.items():
+        thing = stage.light({"BALL": "SPOT", "DISK": "SUN"}.get(kind, kind), location=(0, 0, 0), **fields)
+        if kind == "SPOT":
+            thing.data.shadow_soft_size = 0.0
+        if kind == "SUN":
+            thing.data.angle = 0.0
         plain = export_light(thing, Matrix.Identity(4), Messages(), depsgraph)
         for name, matrix in {**flat, "sheared": sheared, "mirrored": Matrix.Diagonal((-1.0, 1.0, 1.0, 1.0))}.items():
             messages = Messages()
@@ -83,6 +89,19 @@ def transforms():
             share = 0.0 if light is None else light.emission[0] / plain.emission[0]
             result[f"{kind} {name}"] = [shown, share, messages.lines()]
     return {"version": list(bpy.app.version), "lamps": result}
+
+
+def hidden_from_glass():
+    """Messages about a lamp that glossy rays do not see, by the material of the only object."""
+    result = {}
+    for name, roughness in (("Glass", 0.3), ("Glass", 0.0), ("Glossy", 0.3)):
+        stage.empty()
+        stage.light()
+        hidden = stage.light()
+        hidden.name, hidden.visible_glossy = "Hidden", False
+        stage.cube(material=stage.shader(f"ShaderNodeBsdf{name}", Roughness=roughness))
+        result[f"{name} {roughness}"] = export_told()[1].lines()
+    return {"version": list(bpy.app.version), "messages": result}
 
 
 def unknown():

@@ -69,10 +69,10 @@ def flat():
 
 
 def instancers():
-    """Instance a collection three times: plainly, by a hidden empty, and by one that is a holdout."""
+    """Instance a collection with a holdout three times: plainly, by a hidden empty, and by one that is a holdout."""
     stage.empty()
     collection = bpy.data.collections.new("Set")
-    item = _named("piece", visible_glossy=False)
+    item = _named("piece", visible_glossy=False, is_holdout=True)
     bpy.context.scene.collection.objects.unlink(item)
     collection.objects.link(item)
     for height, fields in enumerate(({}, {"visible_camera": False}, {"is_holdout": True})):

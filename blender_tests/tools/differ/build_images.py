@@ -26,24 +26,32 @@ def _pixels(fields):
 
 
 def build_image(name, fields):
-    pixels, kind = _pixels(fields), fields["format"]
     space = images.LINEAR if fields["space"] == "Linear" else fields["space"]
-    if kind in ("BYTE", "FLOAT"):
-        image = images.image(name, pixels, "Non-Color", is_float=kind == "FLOAT", pack=kind == "BYTE")
-    else:
-        stem = os.path.join(bpy.app.tempdir, name)
-        if kind == "PNG8":
-            path = f"{stem}.png"
-            with open(path, "wb") as file:
-                file.write(png.encode(pixels[::-1]))
-        else:
-            used = pixels[..., :1] if fields.get("grey") else pixels[..., :3] if kind == "HDR" else pixels
-            path = image_files.write({"PNG16": "PNG"}.get(kind, kind), stem, used)
-        image = bpy.data.images.load(path)
     try:
-        image.colorspace_settings.name = space
+        return _build(name, fields, space)
     except TypeError:
         # A space that this Blender lacks.
-        image.colorspace_settings.name = "sRGB"
-    image.alpha_mode = fields.get("alpha_mode", "STRAIGHT")
+        return _build(name, fields, "sRGB")
+
+
+def _build(name, fields, space):
+    pixels, kind, alpha_mode = _pixels(fields), fields["format"], fields.get("alpha_mode", "STRAIGHT")
+    if kind == "FLOAT":
+        # Another colour space or alpha mode takes the pixels away from an image that is in no file.
+        return images.image(name, pixels, space, is_float=True, alpha_mode=alpha_mode, pack=False)
+    if kind == "BYTE":
+        image = images.image(name, pixels, "Non-Color")
+    else:
+        image = bpy.data.images.load(_write(os.path.join(bpy.app.tempdir, name), pixels, kind, fields.get("grey")))
+    image.colorspace_settings.name, image.alpha_mode = space, alpha_mode
     return image
+
+
+def _write(stem, pixels, kind, is_grey):
+    """Store pixels in a file of the format, and return its path."""
+    if kind == "PNG8":
+        with open(f"{stem}.png", "wb") as file:
+            file.write(png.encode(pixels[::-1]))
+        return f"{stem}.png"
+    used = pixels[..., :1] if is_grey else pixels[..., :3] if kind == "HDR" else pixels
+    return image_files.write({"PNG16": "PNG"}.get(kind, kind), stem, used)

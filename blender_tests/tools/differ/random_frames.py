@@ -32,6 +32,9 @@ def frame(dice):
         if len(frame["passes"]) > 1 and dice.chance(0.7):
             # Passes of light after many bounces are much noisier than their sum.
             frame["bounces"] = min(1, frame["bounces"])
+        if any(name.startswith("Denoising") for name in frame["passes"]):
+            # Without bounces Cycles weighs what clear surfaces add to the guides otherwise: its paths always pass them.
+            frame["bounces"] = max(1, frame["bounces"])
         if dice.chance(0.2):
             frame["filter_width"] = dice.number(0.8, 2.0)
     if dice.chance(0.2):

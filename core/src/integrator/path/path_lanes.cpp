@@ -202,7 +202,7 @@ void PathIntegrator::record_surfaces() {
     if (waiting_[lane].nothing)
       continue;
     seen |= uint32_t(path.in_view && !waiting_[lane].ends) << lane;
-    guiding |= uint32_t(film_.wants_guides(path)) << lane;
+    guiding |= uint32_t(film_.wants_guides(path) && !waiting_[lane].ends) << lane;
   }
   if (!(seen | guiding))
     return;
@@ -235,14 +235,14 @@ bool PathIntegrator::stays_in_view(uint32_t lane) const {
          block_.alpha2[lane] <= settings_.glass_alpha2;
 }
 
-// Adds the surface's own emission and its denoising guides.
+// Adds the surface's own emission, and its denoising guides unless it ends the path.
 void PathIntegrator::take_emission(uint32_t lane) {
   const Waiting &waiting = waiting_[lane];
   const Path &path = paths_[waiting.number];
   const glm::vec3 emission = surfaces_.emission[lane] + get(block_.emission, lane);
   if (emission != glm::vec3(0.0f))
     add_emission(path, surfaces_.surface(lane), emission);
-  if (film_.wants_guides(path))
+  if (!waiting.ends && film_.wants_guides(path))
     film_.add_guides(path, waiting.mixture, get(block_.wo, lane), surfaces_.transmittance[lane],
                      hits_[waiting.number].t * block_.length[lane]);
 }
