@@ -9,6 +9,8 @@ from . import data_passes
 
 # A pass of light is judged against at least this share of the level of Combined, which it adds to.
 _LEAST_SHARE = 0.2
+# The least level of any picture: of a pixel this dark, a screen shows nothing; the first step of 8 bits is at 3e-4.
+_DARK = 1e-4
 # The most that noise may add to a limit, in limits: a fault of three times the limit is found.
 _MOST_ADDED = 2.0
 # No distance in a scene is larger.
@@ -80,7 +82,7 @@ def _judge_light(case, outcome, ours, theirs):
     level = float(np.mean(np.abs(theirs["Combined"]))) if "Combined" in theirs else 0.0
     for name, pair in theirs.items():
         one, other = (ours[name], pair) if name != "Denoising Depth" else _near(ours[name], pair)
-        least = 0.0 if name in ("Combined", "Alpha") else _LEAST_SHARE * level
+        least = max(_DARK, 0.0 if name in ("Combined", "Alpha") else _LEAST_SHARE * level)
         numbers = figures.measure(one, other, case.kind)
         if numbers.level < least:
             numbers = figures.measure(one, other, case.kind, np.full((1, 1, 1), least))

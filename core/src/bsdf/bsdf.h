@@ -91,8 +91,9 @@ template <class F> struct Bsdf {
 
   // drawn: the lobe that sampled wi, for the weights of sample(); -1 if wi is not a sample.
   BsdfValue<F> eval(const V &wi, int drawn = -1) const;
-  // For light samples. shapes: bits of the lobes to evaluate.
-  BsdfValue<F> eval_lit(const V &wi, uint32_t shapes = kAllShapes) const;
+  // For light samples. shapes: bits of the lobes to evaluate. hidden: lanes whose light shows no lobes of a class, by
+  // Component; null: none.
+  BsdfValue<F> eval_lit(const V &wi, uint32_t shapes = kAllShapes, const B *hidden = nullptr) const;
   // u_lobe selects the lobe, and its remainder selects reflection or refraction; u and v select the direction; all in [0, 1).
   BsdfSample<F> sample(F u_lobe, F u, F v) const;
 
@@ -117,7 +118,8 @@ private:
 
   void turn_to_frames(const V &wi, const WordOf<F> &known, const V &wi_known, B single, Local &local) const;
   ColorValue<F> smooth_value(const Lobe<F> &lobe, const V &wi, const V &h) const;
-  BsdfValue<F> sum(const Local &local, const Drawn &drawn, bool lit, uint32_t shapes = kAllShapes) const;
+  BsdfValue<F> sum(const Local &local, const Drawn &drawn, bool lit, uint32_t shapes = kAllShapes,
+                   const B *hidden = nullptr) const;
   void draw(const Lobe<F> &lobe, B mine, F u_side, F u, F v, Direction &direction) const;
 };
 

@@ -17,6 +17,16 @@ template <class F> bool is_facets(const Lobe<F> &lobe) { return lobe.shape == Lo
 // Returns whether a lobe chooses between reflection and transmission.
 template <class F> bool splits(const Lobe<F> &lobe) { return is_facets(lobe) || lobe.shape == LobeShape::Dielectric; }
 
+// Returns whether lights that a class of rays does not see hide a lobe from light samples, too: as in Cycles, no class is that
+// of glass, which reflects and refracts, and translucent light is diffuse.
+template <class F> bool is_of_class(const Lobe<F> &lobe, Component rays) {
+  if (matte_transmits(lobe))
+    return rays == Component::Diffuse;
+  if (lobe.shape == LobeShape::Dielectric || (is_facets(lobe) && refracts(lobe) && reflects(lobe)))
+    return false;
+  return rays == lobe.component;
+}
+
 template <class F> bool lets_through(const Lobe<F> &lobe) {
   return (is_facets(lobe) && refracts(lobe)) || lobe.shape == LobeShape::Dielectric || matte_transmits(lobe);
 }
@@ -166,7 +176,8 @@ template <class F> ColorValue<F> Bsdf<F>::smooth_value(const Lobe<F> &lobe, cons
   return {V(grey.f * wi.z), grey.pdf};
 }
 
-template <class F> BsdfValue<F> Bsdf<F>::sum(const Local &local, const Drawn &drawn, bool lit, uint32_t shapes) const {
+template <class F>
+BsdfValue<F> Bsdf<F>::sum(const Local &local, const Drawn &drawn, bool lit, uint32_t shapes, const B *hidden) const {
   const F zero(0.0f);
   BsdfValue<F> value;
   // The half vector of a frame serves all lobes that reflect in it.
@@ -181,6 +192,9 @@ template <class F> BsdfValue<F> Bsdf<F>::sum(const Local &local, const Drawn &dr
   for (int i = 0; i < count; ++i) {
     const Lobe<F> &lobe = lobes[i];
     B there = (!lobe.delta) & (lobe.probability != zero);
+    for (int rays = 0; rays < 3 && hidden; ++rays)
+      if (is_of_class(lobe, static_cast<Component>(rays)))
+        there = there & !hidden[rays];
     if (!any(there) || !(shapes & shape_bit(lobe.shape)))
       continue;
     const V &wi = local.wi[lobe.frame];
@@ -238,11 +252,11 @@ template <class F> BsdfValue<F> Bsdf<F>::eval(const V &wi, int drawn) const {
   return sum(local, {number, number, uniform<F>(false), wi}, false);
 }
 
-template <class F> BsdfValue<F> Bsdf<F>::eval_lit(const V &wi, uint32_t shapes) const {
+template <class F> BsdfValue<F> Bsdf<F>::eval_lit(const V &wi, uint32_t shapes, const B *hidden) const {
   Local local;
   turn_to_frames(wi, WordOf<F>(~0u), wi, uniform<F>(false), local);
   const WordOf<F> nobody(~0u);
-  return sum(local, {nobody, nobody, uniform<F>(false), wi}, true, shapes);
+  return sum(local, {nobody, nobody, uniform<F>(false), wi}, true, shapes, hidden);
 }
 
 } // namespace lancer

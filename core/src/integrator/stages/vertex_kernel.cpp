@@ -178,10 +178,12 @@ LANCER_LANE void light_of(VertexBlock &block, int first, const Bsdf<F> &bsdf, D 
   if (!any(lit))
     return;
   const V3 wi = narrow(load3(block.light_wi, first));
-  BsdfValue<F> value = bsdf.eval_lit(wi);
-  constexpr uint32_t kinds[3] = {LANCER_RAY_DIFFUSE, LANCER_RAY_GLOSSY, LANCER_RAY_TRANSMISSION};
-  for (int component = 0; component < 3; ++component)
-    value.part[component] = select(has_bit(block.light_hidden + first, kinds[component]), Vec3<F>(zero), value.part[component]);
+  // In the order of Component.
+  const M hidden[3] = {has_bit(block.light_hidden + first, LANCER_RAY_DIFFUSE),
+                       has_bit(block.light_hidden + first, LANCER_RAY_GLOSSY),
+                       has_bit(block.light_hidden + first, LANCER_RAY_TRANSMISSION)};
+  const bool hides = any(hidden[0] | hidden[1] | hidden[2]);
+  const BsdfValue<F> value = bsdf.eval_lit(wi, kAllShapes, hides ? hidden : nullptr);
   const V3 f = value.f();
   // BSDF samples find the same light, unless it is a single direction. The weights count one sample of each technique even
   // where samples split, as in Cycles. The count matters: with interpolated normals, the two techniques do not find the same
