@@ -111,7 +111,9 @@ class Trees:
             return self._shader(tree, depth + 1) if dice.chance(0.93) else None
         if type_ == "n":
             can_link = can_link and tree not in WORLDS
-            return self._at(tree, dice.pick(node_kinds.NORMALS), "v", depth) if can_link and dice.chance(0.12) else None
+            link = self._at(tree, dice.pick(node_kinds.NORMALS), "v", depth) if can_link and dice.chance(0.12) else None
+            # Whether light is before or behind a tangent, rounding decides.
+            return None if link is None or link[1] == "Tangent" else link
         if type_ == "t":
             return self._at(tree, dice.pick(node_kinds.PLACES), "v", depth) if can_link and dice.chance(0.6) else None
         share = 0.85 if key in kind.always else 0.25
