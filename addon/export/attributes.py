@@ -174,7 +174,10 @@ def _found(mesh, name):
 
 
 def color_attribute(mesh):
-    """Return the colour attribute for rendering; None if the mesh has no colours."""
+    """Return the colour attribute for rendering, of any domain; None if the mesh has no colours."""
+    found = mesh.attributes.get(getattr(mesh.attributes, "default_color_name", None) or "")
+    if found is not None and found.data_type in ("FLOAT_COLOR", "BYTE_COLOR"):
+        return found
     if len(mesh.color_attributes) == 0:
         return None
     # Files of old versions may have no attribute marked for rendering: take the first.

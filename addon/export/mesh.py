@@ -10,6 +10,7 @@ import numpy as np
 from ..bindings.snapshot import MeshData
 from .arrays import at_corners, built_in, corner_vertices, gather, read, triangle_faces
 from .attributes import POLYGONS, color_attribute, read_attributes, read_uv_map, render_uv_map
+from .edges import at_vertices
 from .shading_normals import shading_normals
 
 _SAMPLE = 8
@@ -111,10 +112,16 @@ def _colors(mesh, corners, triangles, poll):
     attribute = color_attribute(mesh)
     if attribute is None:
         return None
-    values = read(attribute.data, "color", np.float32, 4).reshape(-1, 4)[:, :3]
+    values = read(attribute.data, "color", np.float32, 4).reshape(-1, 4)
     if len(values) == 0:
         return None
-    return gather(values, triangles, poll) if attribute.domain == "POINT" else at_corners(values, corners, poll)
+    if attribute.domain == "FACE":
+        faces = slice(None) if corners is None else triangle_faces(mesh)
+        return np.repeat(values[faces, None, :3], 3, axis=1)
+    if attribute.domain == "EDGE":
+        values = at_vertices(mesh, attribute, values)
+    values = values[:, :3]
+    return at_corners(values, corners, poll) if attribute.domain == "CORNER" else gather(values, triangles, poll)
 
 
 def face_slots(mesh):

@@ -101,6 +101,20 @@ def colors_by_name(scene):
     set_board(scene, _color_tiles())
 
 
+@case(size=size_of(4 * 6), bounces=0, quick=True, since=(4, 2))
+def rendered_colors_of_faces_and_edges(scene):
+    """The first colours of a mesh are its rendered ones, whatever their domain. Blender 3 knows none of faces and edges."""
+    tiles = []
+    for kind in ("FLOAT_COLOR", "BYTE_COLOR"):
+        for domain in ("FACE", "EDGE"):
+            mesh = tile_mesh(True)
+            for index, item in enumerate(mesh.attributes.new("One", kind, domain).data):
+                item.color = uneven(index, 4)
+            tiles += [(mesh, output_of(_COLOR, output, {"layer_name": ""})) for output in ("Color", "Alpha")]
+            tiles += [(mesh, output_of(_ATTRIBUTE, output, {"attribute_name": "vertex_color"})) for output in _OUTPUTS]
+    set_board(scene, tiles)
+
+
 def _with_maps(rendered):
     mesh = tile_mesh()
     for index, item in enumerate(mesh.uv_layers.new(name="Second").data):

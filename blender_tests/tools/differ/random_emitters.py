@@ -5,7 +5,10 @@ import math
 from .record import Record
 
 _RAYS = ("camera", "diffuse", "glossy", "transmission")
-_KINDS_OF_RAYS = ("Is Camera Ray", "Is Diffuse Ray", "Is Glossy Ray", "Is Transmission Ray", "Is Reflection Ray")
+# Samples of a sky are of no kind in Cycles: kinds that they may have in a path are reported if the sky is sampled.
+_KINDS_OF_RAYS = {
+    "Is Camera Ray": 4, "Is Diffuse Ray": 0.5, "Is Glossy Ray": 0.5, "Is Transmission Ray": 0.5, "Is Reflection Ray": 0.5,
+}  # fmt: skip
 
 
 def world(dice, is_lit):

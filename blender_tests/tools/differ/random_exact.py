@@ -21,7 +21,9 @@ _READS_UV = ("ShaderNodeTexImage",)
 
 
 def make_exact(dice, records):
-    """Return the records, some of whose objects are exact surfaces."""
+    """Return the records, some of whose objects are exact surfaces; none where the pass UV shows their own coordinates."""
+    if any("UV" in record.fields.get("passes", ()) for record in records if record.verb == "frame"):
+        return records
     named = {record.name: record for record in records if record.verb in ("mesh", "object")}
     users = [record.fields.get("data") for record in records if record.verb == "object"]
     changed = {record.fields["object"] for record in records if record.verb == "modifier"}
