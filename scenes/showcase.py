@@ -9,7 +9,7 @@ from .spheres import scatter
 
 
 def build(scene):
-    parts.set_size(scene, 960, 540, 128)
+    parts.set_size(scene, 960, 540, 64)
     add_figures(scene)
     add_pearls(scene)
     ground = parts.principled("Ground", base_color=(0.32, 0.30, 0.29), roughness=0.28, ior=1.45)
