@@ -68,12 +68,13 @@ template <class F> LANCER_LANE Mixture<F> mix(const Bsdf<F> &bsdf, const Vec3<F>
   for (int i = 0; i < bsdf.count; ++i) {
     const Lobe<F> &lobe = bsdf.lobes[i];
     const MaskOf<F> there = !black(lobe.color);
-    const F weight = select(there, abs(mean(lobe.albedo)), zero), share = matt_share(lobe, blended);
+    const Vec3<F> albedo = lobe.rules < Rules::Blender52 ? lobe.albedo : lobe.albedo - lobe.through + shown_through(lobe);
+    const F weight = select(there, abs(mean(albedo)), zero), share = matt_share(lobe, blended);
     mixture.normal += weight * bsdf.frames[lobe.frame].n;
     mixture.all += weight;
     mixture.matt += share * weight;
-    mixture.diffuse = select(there, mixture.diffuse + share * lobe.albedo, mixture.diffuse);
-    mixture.specular = select(there, mixture.specular + (1.0f - share) * lobe.albedo, mixture.specular);
+    mixture.diffuse = select(there, mixture.diffuse + share * albedo, mixture.diffuse);
+    mixture.specular = select(there, mixture.specular + (1.0f - share) * albedo, mixture.specular);
   }
   mixture.normal = select(mixture.all > zero, mixture.normal / mixture.all, mixture.normal);
   return mixture;
