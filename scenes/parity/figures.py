@@ -185,10 +185,10 @@ def allowance(figures):
 
     The mean of |d + n| is at most mean |d| + mean |n|, and the measured mean |n| averages a hundred values or more, so two
     measurements of it agree within half of its value; of few lit blocks it is 0.8 of the deviation that their pixels show. The
-    99th percentile depends on the noise of few blocks: 4 standard deviations, or, where that noise has long tails, twice the
-    measured tail."""
+    99th percentile depends on the noise of few blocks: 4 standard deviations of all or 3 of the noisiest, or, where that noise
+    has long tails, twice the measured tail."""
     mean = max(figures.noise_mean, 0.8 * figures.spread_mean)
-    return Limit(1.5 * mean, max(4.0 * figures.sigma, 2.0 * figures.noise_p99, 4.0 * figures.spread_p99))
+    return Limit(1.5 * mean, max(4.0 * figures.sigma, 2.0 * figures.noise_p99, 3.0 * figures.spread_p99))
 
 
 def judge(figures, limit):

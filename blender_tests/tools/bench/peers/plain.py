@@ -148,6 +148,9 @@ def _cut_out(material, who):
     rest = nodes[passed.node]
     if rest.kind == NodeKind.MATH and rest.option == MathOperation.SUBTRACT and rest.inputs[0] == 1.0:
         alpha = nodes[rest.inputs[1].node] if isinstance(rest.inputs[1], NodeRef) else None
+        # A node that adds 0 clamps.
+        if alpha is not None and alpha.kind == NodeKind.MATH and alpha.option == MathOperation.ADD and alpha.inputs[1] == 0.0:
+            alpha = nodes[alpha.inputs[0].node] if isinstance(alpha.inputs[0], NodeRef) else None
         if alpha is not None and alpha.kind == NodeKind.ALPHA:
             return _texture(alpha.inputs[0].node, nodes, who)
     raise Cannot(f"{who} is transparent by nodes")
