@@ -259,7 +259,9 @@ def test_bumps_on_bumps(case):
 def test_attributes_that_a_material_reads(case):
     got = case("attributes")
     reader = got["Reader"]
-    assert got["Plain"]["attributes"] == {} and got["messages"] == []
+    assert got["Plain"]["attributes"] == {}
+    # An attribute may leave 0 to 1, where Blender 3 follows it.
+    assert [text for text in got["messages"] if "is clamped to 0 to 1" not in text] == []
     triangles, original = np.array(reader["triangles"]), np.array(got["original"])
     face = [0, 0, 1, 2, 3, 4]
     domain, values = reader["attributes"]["Second"]
