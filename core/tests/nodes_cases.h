@@ -66,7 +66,7 @@ public:
         description.geometry.object_infos.push_back(
             {glm::vec4(any_direction(random), 0.5f), uniform_number(random, 0.0f, 1.0f)});
     }
-    // Of fewer objects than there are.
+    // Values of fewer objects than there are.
     description.geometry.object_attributes.push_back(
         {attribute_name(description, "paint"), {{0.1f, 0.2f, 0.3f, 0.4f}, {-1.0f, 2.0f, 0.5f, 0.0f}}});
     for (uint32_t i = 0; i < kSides + 6; ++i)

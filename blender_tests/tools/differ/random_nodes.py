@@ -4,7 +4,7 @@ from . import closure_kinds, node_kinds, random_properties
 from .record import Record
 
 UV_MAPS = ("UVMap", "Second", "", "Missing")
-# Of each the share: attributes that meshes may have, names with a meaning of their own, and none of either.
+# Shares: attributes that meshes may have, names with a meaning of their own, and none of either.
 ATTRIBUTES = {
     "Number": 2, "Whole": 2, "Vector": 2, "Color": 2, "Byte": 2, "Flag": 2, "Pair": 2, "Four": 1, "Odd": 1, "UVMap": 2,
     "generated": 0.5, "uv": 0.5, "vertex_color": 0.5, "position": 0.3, "material_index": 0.2, "Missing": 1, "": 0.3,
@@ -28,7 +28,7 @@ class Trees:
         self._count = 0
         self._groups, self._group_count = [], 0
         self.budget = 0  # nodes that this tree may still have
-        # Of what is half seen through, Cycles' data are those of a path that it chose by chance.
+        # Data behind a half transparent surface are those of a path that Cycles chooses by chance.
         self.is_opaque = False
 
     def material(self, tree):

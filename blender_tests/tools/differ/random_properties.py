@@ -2,7 +2,7 @@
 
 from .record import Record
 
-# Of each name the share; a number may also be an attribute of meshes.
+# Share of each name; a number may also be an attribute of meshes.
 NAMES = {"Heat": 3, "Tint": 3, "Number": 1, "color": 2, "pass_index": 1, '["Heat"]': 1, "Missing": 0.5}
 TYPES = {"GEOMETRY": 6, "OBJECT": 1, "INSTANCER": 1, "VIEW_LAYER": 0.7}
 _GIVEN = ("Heat", "Tint", "Number", "color")

@@ -158,7 +158,7 @@ void PathIntegrator::send_shadow_of(uint32_t lane) {
 // Samples ambient occlusion by the cosine around the mean normal of the diffuse lobes.
 void PathIntegrator::look_around(uint32_t lane) {
   const Path &path = paths_[waiting_[lane].number];
-  // Of a holdout object Cycles counts the whole surface, whatever its opacity.
+  // Cycles counts the whole surface of a holdout object, whatever its opacity.
   const glm::vec3 weight = block_.holes >> lane & 1 ? path.beta : path.beta * surfaces_.opacity(lane);
   if (block_.looks_itself >> lane & 1)
     send_occlusion_ray(lane, get(block_.occlusion_wi, lane), weight);
