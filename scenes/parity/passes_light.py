@@ -171,7 +171,14 @@ def pass_denoising(scene):
     _still_life(scene)
 
 
-@case(passes=("Denoising Depth",), transparent_bounces=1, bounces=1, size=(48, 32), quick=True)
+@case(
+    passes=("Denoising Depth",),
+    transparent_bounces=1,
+    bounces=1,
+    size=(48, 32),
+    quick=True,
+    blender3=((0.05, 0.06), "Cycles 3 gives the distances of clear layers behind the first other weights in this guide"),
+)
 def pass_denoising_last_surface(scene):
     """Three panes that fill the view; a path that may pass one of them ends at the second, which guides no denoiser."""
     clear = shader("ShaderNodeBsdfPrincipled", Alpha=0.08)
