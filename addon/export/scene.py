@@ -13,7 +13,6 @@ from .images import Images
 from .instances import Instances
 from .materials import Materials
 from .settings import export_settings
-from .visibility import report_lamps_in_glass
 from .world import export_world
 
 
@@ -68,7 +67,6 @@ def export_scene(depsgraph, options=None, poll=None):
         exported = export_world(sky, images, depsgraph, messages)
     else:
         exported = parts.shader(sky, messages, lambda told, pictures: export_world(sky, pictures, depsgraph, told))
-    report_lamps_in_glass(instances.lights, materials.list, messages)
     table, meshes = instances.to_table(obey), instances.meshes
     # Cycles' views keep meshes where they are; only final renders move them.
     if parts is None:

@@ -2,8 +2,7 @@
 
 import bpy
 
-from ..bindings.enums import LobeKind, Ray
-from .arithmetic import is_constant
+from ..bindings.enums import Ray
 
 _BITS = {
     "camera": Ray.CAMERA,
@@ -49,21 +48,3 @@ def sees_light_apart(hidden):
     """
     blocks = ~hidden & _OF_LIGHT
     return blocks != 0 if hidden & int(Ray.SHADOW) else blocks != _OF_LIGHT
-
-
-def report_lamps_in_glass(lights, materials, messages):
-    """Report lamps that are hidden from glass here. Since 4.0 Cycles' samples of lamps obey no switch at glass, its rays do."""
-    hidden = [light.name for light in lights if light.hidden_from & int(Ray.GLOSSY | Ray.TRANSMISSION)]
-    if bpy.app.version < (4, 0) or not hidden or not any(_is_glass(lobe) for item in materials for lobe in item.lobes):
-        return
-    for name in sorted(set(hidden)):
-        messages.add(
-            f"light '{name}': its ray visibility hides it from glass, which Cycles' samples of lamps ignore",
-            "feature:lamps hidden from glass",
-        )
-
-
-def _is_glass(lobe):
-    if lobe.kind == LobeKind.PRINCIPLED:
-        return not is_constant(lobe.principled.transmission, 0.0)
-    return lobe.kind == LobeKind.GLASS and not is_constant(lobe.roughness, 0.0)
