@@ -62,6 +62,11 @@ def check_view_layer(scene, view_layer, messages):
         if scene.render.film_transparent and view_layer.use_pass_environment:
             text = "behind a transparent film Cycles adds the sky to Denoising Albedo if the pass Environment is on"
             messages.add(f"{who}: {text}, here it is never added")
+        if bpy.app.version < (4, 0):
+            messages.add(
+                f"{who}: passes for denoising are those of Cycles 4, in Cycles 3 the albedo of Principled and the depth behind "
+                "clear surfaces differ"
+            )
         for name in _GUIDES_SHAPED_BY:
             if not getattr(cycles, name, True):
                 title = cycles.bl_rna.properties[name].name
@@ -96,7 +101,7 @@ def check_object(thing, scene, messages):
     if sees_light_apart(object_hidden_from(thing)):
         messages.add(
             f"object '{thing.name}': shadow rays see it and paths do not, or the reverse: light behind it depends on the "
-            "sampling of lights, which is not Cycles'",
+            "sampling of lights, which is not Cycles'; with all switches but Camera equal it does not",
             "feature:sampling of light behind an object with ray visibility",
             Severity.HINT,
         )

@@ -46,7 +46,12 @@ def test_every_pass_is_there_and_filled(case):
     # No pass is constant.
     assert [name for name, look in got["passes"].items() if not look["finite"] or look["low"] == look["high"]] == []
     assert got["indices"] == [0, 7] and got["materials"] == [0, 9]
-    assert [line for line in got["messages"] if "pass" in line] == []
+    told = [line for line in got["messages"] if "pass" in line]
+    if got["version"] >= [4, 0]:
+        assert told == []
+    else:
+        (line,) = told
+        assert line.startswith("view layer 'ViewLayer': passes for denoising are those of Cycles 4")
 
 
 def test_parts_give_the_picture_again(case):

@@ -2,7 +2,7 @@
 
 from .. import parts
 from .catalogue import case
-from .nodes import shader
+from .nodes import material, shader
 from .stages import ball, camera, floor, lamp, sky
 
 _LIGHT = tuple(f"{kind} {part}" for kind in ("Diffuse", "Glossy", "Transmission") for part in ("Direct", "Indirect", "Color"))
@@ -171,17 +171,17 @@ def pass_denoising(scene):
     _still_life(scene)
 
 
-@case(
-    passes=("Denoising Depth",),
-    transparent_bounces=1,
-    bounces=1,
-    size=(48, 32),
-    quick=True,
-    blender3=((0.05, 0.06), "Cycles 3 gives the distances of clear layers behind the first other weights in this guide"),
-)
+@case(passes=("Denoising Depth",), transparent_bounces=1, bounces=1, size=(48, 32), quick=True, since=(4, 0))
 def pass_denoising_last_surface(scene):
     """Three panes that fill the view; a path that may pass one of them ends at the second, which guides no denoiser."""
-    clear = shader("ShaderNodeBsdfPrincipled", Alpha=0.08)
+
+    def build(nodes):
+        mix = nodes.add("ShaderNodeMixShader", 0.08)
+        nodes.link(nodes.add("ShaderNodeBsdfTransparent"), mix.inputs[1])
+        nodes.link(nodes.add("ShaderNodeBsdfDiffuse", Color=(0.8, 0.8, 0.8)), mix.inputs[2])
+        return mix
+
+    clear = material(build)
     for index in range(3):
         parts.place(scene, f"Pane {index}", parts.plane_mesh("Pane", 40.0), clear, (0, 2.0 * index, 0), rotation=(1.5708, 0, 0))
     sky(scene)

@@ -18,9 +18,10 @@ _NO_PASSES = "these passes are not supported"
 
 def make_case(records):
     frame = next((record.fields for record in records if record.verb == "frame"), {})
-    # The albedo that Blender 3 gives its denoiser has rules of its own, which Lancer does not follow.
-    left_out = ("Denoising Albedo",) if bpy.app.version < (4, 0) else ()
-    passes = tuple(name for name in frame.get("passes", ("Combined",)) if name not in left_out) or ("Combined",)
+    passes = tuple(frame.get("passes", ("Combined",)))
+    if bpy.app.version < (4, 0):
+        # Lancer reports its passes for denoising as other than Cycles 3's; the message would excuse all other passes.
+        passes = tuple(name for name in passes if not name.startswith("Denoising")) or ("Combined",)
     fields = {"passes": passes, "dark": (*passes, "Alpha"), "size": tuple(frame.get("size", (48, 32))), "samples": _SAMPLES}
     fields |= {name: frame[name] for name in ("bounces", "transparent_bounces", "filter_width") if name in frame}
     kind = frame.get("kind", "LOBES")
