@@ -120,6 +120,10 @@ class NodeGraph:
         values = (*values, *(0.0,) * (3 - len(values)))
         return self.emit(NodeKind.MATH, *values, option=operation, flags=int(clamped))
 
+    def clamped(self, value):
+        """Return a number clamped to 0 to 1; constants are clamped where they are read."""
+        return self.op(MathOperation.ADD, value, 0.0, clamped=True) if isinstance(value, NodeRef) else value
+
     def vector_op(self, operation, *values, scale=1.0):
         values = (*values, *((0.0, 0.0, 0.0),) * (3 - len(values)))
         return self.emit(NodeKind.VECTOR_MATH, *values, scale, option=operation)

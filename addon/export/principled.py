@@ -3,7 +3,7 @@
 import bpy
 
 from ..bindings import snapshot
-from ..bindings.enums import LobeKind, MathOperation, Rules
+from ..bindings.enums import LobeKind, Rules
 from ..bindings.shading import NodeRef
 from ..bindings.structs import PARAMETERS, Principled
 from .arithmetic import is_constant
@@ -28,9 +28,7 @@ def read_principled(surface, site, weight):
         return graph.parameter(site, PRINCIPLED[name], default, low=low, high=high)
 
     # Alpha weighs the surface; the rest of the light passes straight through.
-    alpha = number("alpha", 1.0, 0.0, 1.0)
-    if isinstance(alpha, NodeRef):
-        alpha = graph.op(MathOperation.ADD, alpha, 0.0, clamped=True)
+    alpha = graph.clamped(number("alpha", 1.0, 0.0, 1.0))
     surface.transmit(graph.multiply(graph.subtract(1.0, alpha), weight))
     weight = graph.multiply(weight, alpha)
     if is_constant(weight, 0.0):

@@ -3,7 +3,7 @@
 from dataclasses import fields, replace
 
 from ..bindings import snapshot
-from ..bindings.enums import LobeKind, MathOperation, Rules
+from ..bindings.enums import LobeKind, Rules
 from ..bindings.shading import NodeRef
 from ..messages.severity import Severity
 from .arithmetic import is_constant, triple
@@ -99,9 +99,7 @@ class Surface:
             return ()
         if node.type == "MIX_SHADER":
             first, second = (graph.walker.origin(site, socket) for socket in _shader_inputs(site))
-            factor = graph.parameter(site, ("Fac", "Factor"), 0.5, low=0.0, high=1.0)
-            if isinstance(factor, NodeRef):
-                factor = graph.op(MathOperation.ADD, factor, 0.0, clamped=True)
+            factor = graph.clamped(graph.parameter(site, ("Fac", "Factor"), 0.5, low=0.0, high=1.0))
             rest = graph.subtract(1.0, factor)
             return ((first, rest), (second, factor))
         if node.type == "ADD_SHADER":
