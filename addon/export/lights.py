@@ -95,7 +95,8 @@ def _check_layers(kind, radius, who, messages, depsgraph):
     bounces = depsgraph.scene.lancer.transparent_bounces
     if bounces + (bpy.app.version < (5, 0)) <= 1:
         messages.add(
-            f"{who}: with at most {bounces} transparent bounces Cycles ends paths at lamps, here they continue behind them",
+            f"{who}: with at most {bounces} transparent bounces Cycles ends paths at lamps, here they continue behind them; "
+            "with 2 and more both engines continue",
             "feature:lamps that end paths",
         )
 

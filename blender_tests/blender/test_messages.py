@@ -112,6 +112,15 @@ def test_groups_of_addons_are_entered(case):
     assert got["emission"] == [0.25, 0.5, 0.75] and got["messages"] == []
 
 
+def test_light_that_depends_on_sampling_is_named(case):
+    """A sky that looks different to the camera alone is no such light."""
+    got = case("by_sampling")
+    lamp, sky = (line for line in got["after"] if line not in got["before"] and line.startswith(("light", "world")))
+    assert not any("sampling" in line or "ends paths" in line for line in got["before"])
+    assert lamp.startswith("light 'Light': with at most 0 transparent bounces Cycles ends paths at lamps")
+    assert sky.startswith("world 'World': its nodes read Light Path")
+
+
 def test_passes_that_an_integrator_leaves_black_are_named(case):
     got = case("empty_passes")
     assert got["PATH"] == {"black": [], "told": []}

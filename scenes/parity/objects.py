@@ -140,18 +140,6 @@ def transparent_counts_no_bounce(scene):
     camera(scene)
 
 
-@case(quick=True, bounces=0)
-def empty_slot_of_an_object(scene):
-    """Since 5.2 the default surface; before, the material of the mesh."""
-    mesh = parts.plane_mesh("Pane", 1.6)
-    mesh.materials.append(shader("ShaderNodeEmission", Color=(0.1, 0.5, 0.2)))
-    slot = parts.place(scene, "Pane", mesh, None, rotation=(0, 0.4, 0)).material_slots[0]
-    slot.link = "OBJECT"
-    slot.material = None
-    parts.add_light(scene, "Light", "SUN", 3.0, (0.3, -0.3, 3), angle=0.0)
-    camera(scene, (0, -3, 4), (0, 0, 0))
-
-
 @case(quick=True)
 def no_material(scene):
     """The default surface of an object without a material."""

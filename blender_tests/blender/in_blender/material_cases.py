@@ -287,7 +287,7 @@ def attributes():
             "attributes": {a.name: [Domain(a.domain).name, a.values.tolist()] for a in mesh.attributes},
         }
         for mesh in snapshot.meshes
-    } | {"messages": list(messages), "original": np.array(vertices, float).tolist()}
+    } | {"messages": list(messages), "original": np.array(vertices, float).tolist(), "version": list(bpy.app.version)}
 
 
 def fuzz(count):

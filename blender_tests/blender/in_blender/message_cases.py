@@ -156,6 +156,23 @@ def custom_group():
     return {"emission": list(snapshot.materials[0].emission), "messages": messages.lines()}
 
 
+def by_sampling():
+    """Return the messages of a scene whose sky reads Light Path for the camera; then for glossy rays, without clear layers."""
+    from export_cases import export_told
+
+    scene = stage.empty()
+    stage.light(shadow_soft_size=0.5)
+    sky = stage.sky()
+    nodes = sky.node_tree.nodes
+    background = next(node for node in nodes if node.type == "BACKGROUND")
+    path = nodes.new("ShaderNodeLightPath")
+    sky.node_tree.links.new(path.outputs["Is Camera Ray"], background.inputs["Strength"])
+    before = export_told()[1].lines()
+    sky.node_tree.links.new(path.outputs["Is Glossy Ray"], background.inputs["Strength"])
+    scene.lancer.transparent_bounces = 0
+    return {"before": before, "after": sorted(export_told()[1].lines())}
+
+
 def empty_passes():
     """Return, for each integrator, the passes that are all zero, and the messages."""
     import pass_cases

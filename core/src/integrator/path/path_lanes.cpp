@@ -193,8 +193,7 @@ void PathIntegrator::keep_vertices() {
     keep_vertex(paths_[waiting_[lane].number], surfaces_.surface(lane), surfaces_.hit(lane).t);
 }
 
-// Fills the passes of the surfaces that the camera sees. A surface that ends the path contributes only its emission, as in
-// Cycles.
+// Fills the passes of the surfaces that the camera sees. As in Cycles, a surface that ends the path gives only its emission.
 void PathIntegrator::record_surfaces() {
   uint32_t seen = 0, guiding = 0;
   for (uint32_t lane = 0; lane < surfaces_.count(); ++lane) {
