@@ -350,14 +350,6 @@ def test_export_under_transforms(which, tmp_path):
 
 
 @pytest.mark.parametrize("which", [MODULE, PROGRAM])
-def test_lamps_hidden_from_glass_are_reported(which, tmp_path):
-    """Since 4.0 Cycles' samples of lamps obey no switch at rough glass; at smooth glass it takes no samples."""
-    got = blenders.run(which, tmp_path, "light_cases", "hidden_from_glass")
-    told = ["light 'Hidden': its ray visibility hides it from glass, which Cycles' samples of lamps ignore"]
-    assert got["messages"] == {"Glass 0.3": told if got["version"] >= [4, 0] else [], "Glass 0.0": [], "Glossy 0.3": []}
-
-
-@pytest.mark.parametrize("which", [MODULE, PROGRAM])
 def test_lights_that_are_not_known_keep_their_power(which, tmp_path):
     got = blenders.run(which, tmp_path, "light_cases", "unknown")
     share, messages = got["TexImage"]

@@ -2,7 +2,6 @@
 
 import bpy
 import stage
-from export_cases import export_told
 from mathutils import Euler, Matrix
 
 from addon.export.lights import export_light
@@ -89,19 +88,6 @@ def transforms():
             share = 0.0 if light is None else light.emission[0] / plain.emission[0]
             result[f"{kind} {name}"] = [shown, share, messages.lines()]
     return {"version": list(bpy.app.version), "lamps": result}
-
-
-def hidden_from_glass():
-    """Messages about a lamp that glossy rays do not see, by the material of the only object."""
-    result = {}
-    for name, roughness in (("Glass", 0.3), ("Glass", 0.0), ("Glossy", 0.3)):
-        stage.empty()
-        stage.light()
-        hidden = stage.light()
-        hidden.name, hidden.visible_glossy = "Hidden", False
-        stage.cube(material=stage.shader(f"ShaderNodeBsdf{name}", Roughness=roughness))
-        result[f"{name} {roughness}"] = export_told()[1].lines()
-    return {"version": list(bpy.app.version), "messages": result}
 
 
 def unknown():

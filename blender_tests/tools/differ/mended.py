@@ -71,6 +71,14 @@ def _alpha(level):
     return [_frame(bounces=1), *_SUN, *_SKY, *_thing("cube", *nodes)]
 
 
+def _hidden_sun(rays, shader, **inputs):
+    """A ball of one shader under a sun that a class of rays does not see."""
+    sun, place = _SUN
+    place = place._replace(fields={**place.fields, "settings": {f"visible_{rays}": False}})
+    nodes = _node(f"Bsdf{shader}", inputs), _shown(["@M/1", "BSDF"])
+    return [_frame(bounces=1), sun, place, *_thing("ball", *nodes, mesh={"smooth": "yes"})]
+
+
 SCENES = {
     "color pass of the last of the transparent layers": [
         _frame(transparent_bounces=1, passes=["Diffuse Color"]),
@@ -133,6 +141,10 @@ SCENES = {
         _frame(passes=["Ambient Occlusion"]),
         *_thing("plane", _node("BsdfPrincipled", {"Alpha": 0.9}), _shown(["@M/1", "BSDF"]), settings={"is_holdout": True}),
     ],
+    "sun hidden from glossy rays on rough glass": _hidden_sun("glossy", "Glass", Roughness=0.4),
+    "sun hidden from transmitted rays on rough glass": _hidden_sun("transmission", "Glass", Roughness=0.4),
+    "sun hidden from diffuse rays on paper": _hidden_sun("diffuse", "Translucent"),
+    "sun hidden from transmitted rays on paper": _hidden_sun("transmission", "Translucent"),
     "mist of a layer with another world": [
         _frame(passes=["Mist", "Ambient Occlusion"]),
         Record("world", "World", {"mist": {"start": 1.0, "depth": 6.0}, "occlusion_distance": 0.2}),
