@@ -150,6 +150,7 @@ class NodeKind(IntEnum):
 class AttributeFlag(IntFlag):
     OPAQUE = 1
     FIRST = 2
+    STILL = 4
 
 
 class ColorModel(IntEnum):
@@ -414,7 +415,8 @@ class Rules(IntEnum):
     BLENDER_3 = 0
     BLENDER_4 = 1
     BLENDER_45 = 2
-    BLENDER_52 = 3
+    BLENDER_50 = 3
+    BLENDER_52 = 4
 
 
 class MaterialFlag(IntFlag):

@@ -15,7 +15,8 @@ from .properties import view_layer_value
 
 _RADIAL = {"X": 0, "Y": 1, "Z": 2}
 _ALONG_U = 3
-_NOT_IN_WORLD = 1  # flag of TANGENT
+# Flags of TANGENT: 0, or across the ray.
+_TANGENT_OF_WORLD = 1 if bpy.app.version < (5, 2) else 2
 # Names of attributes that Cycles computes itself.
 _UNREAD = {"N", "generated_transform", "pointiness", "random_per_island", "tangent", "tangent_sign"}
 if bpy.app.version < (4, 5):
@@ -104,10 +105,11 @@ def _uv_map(graph, site, output):
 
 def _named(graph, name, flags=0):
     # Cycles gives this name to Generated coordinates, even if the mesh has an attribute of that name.
-    key = name if name == "generated" else attribute_name(name)
+    if name == "generated":
+        return coordinate(graph, Coordinate.GENERATED)
     if name:
-        graph.attributes.add(key)
-    return graph.emit(NodeKind.ATTRIBUTE, name=key, flags=int(flags))
+        graph.attributes.add(attribute_name(name))
+    return graph.emit(NodeKind.ATTRIBUTE, name=attribute_name(name), flags=int(flags))
 
 
 def _attribute(graph, site, output):
@@ -122,7 +124,10 @@ def _attribute(graph, site, output):
     if is_alpha:
         if name == "vertex_color":
             return _render_alpha(graph, AttributeFlag.OPAQUE)
-        return 1.0 if name == "uv" else graph.emit(NodeKind.ALPHA, _named(graph, name, AttributeFlag.OPAQUE))
+        # The world has no attributes: Cycles 5.2 takes the mean of a direction for its alpha.
+        if name == "generated" and graph.is_of_world and bpy.app.version >= (5, 2):
+            return graph.vector_op(VectorOperation.DOT_PRODUCT, coordinate(graph, Coordinate.GENERATED), THIRDS)
+        return 1.0 if name in ("uv", "generated") else graph.emit(NodeKind.ALPHA, _named(graph, name, AttributeFlag.OPAQUE))
     is_number = output.identifier == "Fac"
     if name == "uv":
         value = coordinate(graph, Coordinate.UV)
@@ -176,7 +181,7 @@ def _geometry(graph, site, output):
 def default_tangent(graph):
     """Return the tangent around the object's z axis, Cycles' default for anisotropic surfaces."""
     graph.attributes.add("generated")
-    return graph.emit(NodeKind.TANGENT, option=_RADIAL["Z"], flags=_NOT_IN_WORLD)
+    return graph.emit(NodeKind.TANGENT, option=_RADIAL["Z"], flags=_TANGENT_OF_WORLD)
 
 
 def _tangent(graph, site, output):

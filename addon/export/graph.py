@@ -54,6 +54,7 @@ class NodeGraph:
         self.unknown = unknown
         self.attributes = set()  # names of mesh attributes that the nodes read
         self.objects = set()  # identities of the objects whose transform the nodes read
+        self.is_of_world = False
         self.lamp_value = None  # for a lamp: a function that returns four numbers by the name of an ObjectAttribute
         self.reads_layer = False  # whether the nodes read properties of the view layer, the scene or its world
         self.material_index = 0  # of the owner; 0 if the owner is no material

@@ -200,7 +200,8 @@ def _displacement(material, graph, site):
         offset = graph.input(site, socket)
         if not is_constant(offset, 0.0):
             values["displacement"] = offset
-    if method != "DISPLACEMENT":
+    # Without a surface, Cycles evaluates no bump.
+    if method != "DISPLACEMENT" and graph.is_linked(site, ("Surface",)):
         first, height = graph.height_nodes(lambda: displacement_height(graph, site, socket))
         both = "displacement" in values
         normal = bump(graph, first, height, 1.0, 1.0, graph.normal, _BUMP_WIDTH, undisplaced=both)

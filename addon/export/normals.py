@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..bindings.enums import Coordinate, MathOperation, NodeKind, Rules, VectorOperation
+from ..bindings.enums import AttributeFlag, Coordinate, MathOperation, NodeKind, Rules, VectorOperation
 from ..bindings.shading import NodeRef
 from .arithmetic import is_constant
 from .attributes import attribute_name, tangents_name
@@ -114,7 +114,7 @@ def _from_tangents(graph, vector):
     """Return a vector with components along tangent, normal and bitangent, in this order, in object space."""
     v = VectorOperation
     want_tangents(graph, "")
-    tangent = graph.emit(NodeKind.ATTRIBUTE, name=tangents_name(""))
+    tangent = graph.emit(NodeKind.ATTRIBUTE, name=tangents_name(""), flags=AttributeFlag.STILL)
     normal = graph.emit(NodeKind.DISPLACEMENT, 1.0, 0.0, 1.0, _ORIGIN, option=_OBJECT)
     turned = graph.vector_op(v.NORMALIZE, graph.vector_op(v.CROSS_PRODUCT, normal, tangent))
     bitangent = graph.vector_op(v.SCALE, turned, scale=graph.emit(NodeKind.ALPHA, tangent))

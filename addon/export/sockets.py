@@ -4,7 +4,10 @@ import bpy
 
 from ..bindings.enums import Rules
 
-_SINCE = {(5, 2): Rules.BLENDER_52, (4, 5): Rules.BLENDER_45, (4, 0): Rules.BLENDER_4, (0, 0): Rules.BLENDER_3}
+_SINCE = {
+    (5, 2): Rules.BLENDER_52, (5, 0): Rules.BLENDER_50, (4, 5): Rules.BLENDER_45, (4, 0): Rules.BLENDER_4,
+    (0, 0): Rules.BLENDER_3,
+}  # fmt: skip
 RULES = next(rules for version, rules in _SINCE.items() if bpy.app.version >= version)
 # Option of DIFFUSE and of the Principled BSDF: before 4.3 Blender's rough diffuse surface loses light.
 DIFFUSE_OPTION = int(bpy.app.version >= (4, 3))

@@ -48,3 +48,8 @@ def sees_light_apart(hidden):
     """
     blocks = ~hidden & _OF_LIGHT
     return blocks != 0 if hidden & int(Ray.SHADOW) else blocks != _OF_LIGHT
+
+
+def lights_some_lobes(hidden):
+    """Whether a light is hidden from some kinds of scattered rays and not from all: Ray bits as above."""
+    return hidden & _OF_LIGHT not in (0, _OF_LIGHT)

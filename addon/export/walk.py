@@ -56,6 +56,8 @@ class Walker:
                 onward = _passed_through(node, output)
             elif node.type in _GROUPS and not _is_closure(node, output):
                 onward, path = _group_result(node, output), (*path, node)
+                if onward is None:
+                    constant, depth = None, len(types)
             elif node.type == "GROUP_INPUT" and path:
                 onward, path = _by_identifier(path[-1].inputs, output.identifier), path[:-1]
             else:

@@ -11,7 +11,7 @@ from ..messages.severity import Severity
 from .graph import NodeGraph
 from .sockets import output_node
 from .surface import emission_of
-from .visibility import hidden_from
+from .visibility import hidden_from, lights_some_lobes
 
 # In the order of lancer.h.
 CUBE_SIDES = tuple(f"cube_{sign}_{axis}" for axis in "xyz" for sign in ("positive", "negative"))
@@ -31,6 +31,7 @@ def export_world(world, images, depsgraph, messages):
         return Sky(snapshot.World())
     who = f"world '{world.name}'"
     graph = NodeGraph(who, messages, images, depsgraph)
+    graph.is_of_world = True
     own = world.lancer
     cycles = getattr(world, "cycles", None)
     if getattr(cycles, "max_bounces", 1024) < 1024:
@@ -55,11 +56,19 @@ def export_world(world, images, depsgraph, messages):
             "feature:sampling of a sky that reads Light Path",
             Severity.HINT,
         )
+    hidden = hidden_from(getattr(world, "cycles_visibility", None))
+    if lights_some_lobes(hidden) and isinstance(radiance, snapshot.NodeRef):
+        messages.add(
+            f"{who}: ray visibility hides it from some lobes of a surface and not from others: their light depends on the "
+            "sampling of the sky, which is not Cycles'; with Diffuse, Glossy and Transmission equal it does not",
+            "feature:sampling of a sky with ray visibility",
+            Severity.HINT,
+        )
     sky = snapshot.World(
         radiance=radiance,
         ambient=messages.color(own.ambient_color, who, "ambient colour") if own.use_ambient_color else None,
         nodes=graph.nodes,
-        hidden_from=hidden_from(getattr(world, "cycles_visibility", None)),
+        hidden_from=hidden,
         map_resolution=cycles.sample_map_resolution if method == "MANUAL" else 0,
     )
     return Sky(sky, frozenset(graph.objects), graph.reads_layer)

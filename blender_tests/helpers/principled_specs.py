@@ -145,6 +145,7 @@ def specs(version):
     """Return (name, node, lobe) for a version of Blender."""
     if version < (4, 0):
         return list(_alone(version, Rules.BLENDER_3)) + list(_layered(Rules.BLENDER_3, _LAYERS_3))
-    rules = Rules.BLENDER_4 if version < (4, 5) else Rules.BLENDER_45 if version < (5, 2) else Rules.BLENDER_52
+    since = {(5, 2): Rules.BLENDER_52, (5, 0): Rules.BLENDER_50, (4, 5): Rules.BLENDER_45, (0, 0): Rules.BLENDER_4}
+    rules = next(rules for first, rules in since.items() if version >= first)
     layers = _LAYERS_4 if version < (4, 3) else {**_LAYERS_4, **_CHALK}
     return list(_alone(version, rules)) + list(_layered(rules, layers))

@@ -243,8 +243,8 @@ enum lancer_node_kind {
                                surface before displacement, in object space, 4: give a flat face, too, its normal before
                                displacement. Nodes [first, this) compute the height; they are evaluated at the hit point, to
                                its right and above it */
-  LANCER_NODE_TANGENT = 17, /* option 0, 1, 2: radial about x, y, z of GENERATED; 3: along u of the UV map name; flag 1: 0 in the
-                               world */
+  LANCER_NODE_TANGENT = 17, /* option 0, 1, 2: radial about x, y, z of GENERATED; 3: along u of the UV map name; flags in
+                               the world: 1: 0; 2: across the ray */
   LANCER_NODE_CLAMP = 18,   /* inputs: value, low, high */
   LANCER_NODE_DISPLACEMENT = 19, /* inputs: height, midlevel, scale, normal; option: space of scale, 0 object, 1 world.
                                     Returns an offset in object space */
@@ -269,7 +269,8 @@ enum lancer_node_kind {
 };
 enum lancer_attribute_flag {
   LANCER_ATTRIBUTE_OPAQUE = 1, /* alpha is 1 on a mesh without the attribute; else 0 */
-  LANCER_ATTRIBUTE_FIRST = 2   /* of two channels the first is in x, y, z, for a node that reads one number */
+  LANCER_ATTRIBUTE_FIRST = 2,  /* of two channels the first is in x, y, z, for a node that reads one number */
+  LANCER_ATTRIBUTE_STILL = 4   /* in the height of a bump: the value at the bump itself */
 };
 /* Conversion between linear RGB and hue, saturation and value (HSV) or lightness (HSL). */
 enum lancer_color_model {
@@ -540,8 +541,14 @@ enum lancer_distribution {
   LANCER_DISTRIBUTION_ASHIKHMIN_SHIRLEY = 2,
   LANCER_DISTRIBUTION_MULTI_GGX = 3
 };
-/* The Blender versions whose definitions hold for lobes of nodes: 3.x, 4.0 to 4.4, 4.5 to 5.1, 5.2 and newer. */
-enum lancer_rules { LANCER_RULES_BLENDER_3 = 0, LANCER_RULES_BLENDER_4 = 1, LANCER_RULES_BLENDER_45 = 2, LANCER_RULES_BLENDER_52 = 3 };
+/* The Blender versions whose definitions hold for lobes of nodes: 3.x, 4.0 to 4.4, 4.5, 5.0 and 5.1, 5.2 and newer. */
+enum lancer_rules {
+  LANCER_RULES_BLENDER_3 = 0,
+  LANCER_RULES_BLENDER_4 = 1,
+  LANCER_RULES_BLENDER_45 = 2,
+  LANCER_RULES_BLENDER_50 = 3,
+  LANCER_RULES_BLENDER_52 = 4
+};
 
 /* The Principled BSDF's inputs under their newest names. Before 4.0 some have another meaning: specular is the level over
  * 0.08, specular_tint[0] and sheen_tint[0] mix in the base colour's hue, coat is four times the layer's weight;

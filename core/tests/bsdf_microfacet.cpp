@@ -224,5 +224,18 @@ TEST(Microfacet, ComponentsTellReflectionFromTransmission) {
   }
 }
 
+// Since 5.2 the colour passes of glass show means over the facets, of either side of the same boundary.
+TEST(Microfacet, TransmittedColourIsThatOfBothSides) {
+  const auto shown = [](float ior, float cosine) {
+    LobeInputs<float> glass = rough(LobeKind::Glass, Facets::Ggx, 0.3f, ior);
+    glass.rules = Rules::Blender52;
+    return seen({glass}, direction(cosine)).shown(Component::Transmission).x;
+  };
+  for (float cosine : {0.1f, 0.5f, 0.9f})
+    EXPECT_NEAR(shown(1.5f, cosine), shown(1.0f / 1.5f, cosine), 8.0 * kUlp) << cosine;
+  const Bsdf<float> mirror = seen({rough(LobeKind::Glossy, Facets::Ggx, 0.3f)}, direction(0.5));
+  EXPECT_EQ(mirror.shown(Component::Transmission), glm::vec3(0.0f));
+}
+
 } // namespace
 } // namespace lancer

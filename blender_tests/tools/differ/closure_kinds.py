@@ -1,6 +1,6 @@
 """The shaders and displacements of random graphs, as node_kinds has the rest."""
 
-from .node_kinds import NORMAL, C, F, Kind
+from .node_kinds import NORMAL, TANGENT, C, F, Kind
 
 SHADERS = {
     "ShaderNodeBsdfDiffuse": Kind({"Color": C, "Roughness": F, "Normal": NORMAL}, {"BSDF": "s"}, weight=5.0),
@@ -11,7 +11,7 @@ SHADERS = {
             "Anisotropic Rotation": F, "Transmission Weight": F, "Coat Weight": F, "Coat Roughness": ("f", 0.15, 1.0),
             "Coat IOR": ("f", 1.0, 2.0), "Coat Tint": C, "Sheen Weight": F, "Sheen Roughness": ("f", 0.15, 1.0),
             "Sheen Tint": C, "Emission Color": C, "Emission Strength": F, "Normal": NORMAL, "Coat Normal": NORMAL,
-            "Tangent": NORMAL,
+            "Tangent": TANGENT,
         },
         {"BSDF": "s"},
         {"distribution": ("GGX", "MULTI_GGX")},
@@ -21,7 +21,7 @@ SHADERS = {
     "ShaderNodeBsdfGlossy": Kind(
         {
             "Color": C, "Roughness": ("f", 0.15, 0.9), "Anisotropy": ("f", -0.9, 0.9), "Rotation": F, "Normal": NORMAL,
-            "Tangent": NORMAL,
+            "Tangent": TANGENT,
         },
         {"BSDF": "s"},
         {"distribution": ("GGX", "GGX", "BECKMANN", "MULTI_GGX", "ASHIKHMIN_SHIRLEY")},
@@ -31,7 +31,7 @@ SHADERS = {
     "ShaderNodeBsdfMetallic": Kind(
         {
             "Base Color": C, "Edge Tint": C, "IOR": ("v", 0.5, 3.0), "Extinction": ("v", 0.5, 4.0),
-            "Roughness": ("f", 0.15, 0.9), "Anisotropy": F, "Rotation": F, "Normal": NORMAL, "Tangent": NORMAL,
+            "Roughness": ("f", 0.15, 0.9), "Anisotropy": F, "Rotation": F, "Normal": NORMAL, "Tangent": TANGENT,
         },
         {"BSDF": "s"},
         {"distribution": ("GGX", "BECKMANN", "MULTI_GGX"), "fresnel_type": ("PHYSICAL_CONDUCTOR", "F82")},

@@ -71,6 +71,16 @@ def _alpha(level):
     return [_frame(bounces=1), *_SUN, *_SKY, *_thing("cube", *nodes)]
 
 
+def _of_world(node, output):
+    """A world that shows an output of a node."""
+    return [
+        _frame(),
+        Record("world", "World", {}),
+        Record("node", "World/1", {"tree": "World", **node}),
+        Record("node", "World/2", {"tree": "World", **_node("OutputWorld", {"Surface": ["@World/1", output]})}),
+    ]
+
+
 def _hidden_sun(rays, shader, **inputs):
     """A ball of one shader under a sun that a class of rays does not see."""
     sun, place = _SUN
@@ -104,11 +114,34 @@ SCENES = {
             mesh={"uv_maps": ["UVMap"]},
         ),
     ],
-    "normal map in the world": [
-        _frame(),
-        Record("world", "World", {}),
-        Record("node", "World/1", {"tree": "World", **_node("NormalMap", space="WORLD")}),
-        Record("node", "World/2", {"tree": "World", **_node("OutputWorld", {"Surface": ["@World/1", "Normal"]})}),
+    "normal map in the world": _of_world(_node("NormalMap", space="WORLD"), "Normal"),
+    "tangent of the world": _of_world(_node("NewGeometry"), "Tangent"),
+    "generated coordinates of the world by name": _of_world(_node("Attribute", attribute_name="generated"), "Color"),
+    "their alpha": _of_world(_node("Attribute", attribute_name="generated"), "Alpha"),
+    "world hidden from diffuse rays behind paper": [
+        _frame(bounces=2),
+        *_SKY[1:],
+        Record("world", "World", {"hidden_from": ["diffuse"]}),
+        *_thing("ball", _node("BsdfTranslucent"), _shown(["@M/1", "BSDF"])),
+    ],
+    "displacement of a surface without a shader": [
+        _frame(kind="DATA", passes=["Normal"]),
+        *_thing(
+            "ball",
+            _node("NewGeometry"),
+            _node("TexNoise", {"Vector": ["@M/1", "Position"]}),
+            _node("OutputMaterial", {"Displacement": ["@M/2", "Fac"]}),
+        ),
+    ],
+    "vector displacement as a bump": [
+        _frame(kind="DATA", passes=["Normal"]),
+        *_thing(
+            "plane",
+            _node("VectorDisplacement", {"Vector": [0.3, 0.8, 0.4], "Scale": 0.2}),
+            _node("BsdfDiffuse"),
+            _node("OutputMaterial", {"Surface": ["@M/2", "BSDF"], "Displacement": ["@M/1", "Displacement"]}),
+            mesh={"uv_maps": ["UVMap"], "custom_normals": 0.18},
+        ),
     ],
     "alpha above 1": _alpha(1.6),
     "alpha below 0": _alpha(-0.4),
@@ -122,6 +155,17 @@ SCENES = {
         _frame(passes=["Glossy Color"]),
         *_SKY,
         *_thing("plane", _node("BsdfSheen", distribution="ASHIKHMIN"), _shown(["@M/1", "BSDF"])),
+    ],
+    "velvet about a normal that leans away": [
+        _frame(),
+        *_SKY,
+        *_thing(
+            "plane",
+            _node("CombineXYZ", {"X": -0.1, "Y": -0.2, "Z": -0.2}),
+            _node("BsdfSheen", {"Normal": ["@M/1", "Vector"]}, distribution="ASHIKHMIN"),
+            _shown(["@M/2", "BSDF"]),
+            scale=[5.0] * 3,
+        ),
     ],
     "metal that absorbs little": [
         _frame(),

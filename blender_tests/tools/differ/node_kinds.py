@@ -22,6 +22,7 @@ F = ("f", 0.0, 1.0)
 C = ("c", 0.0, 1.0)
 V = ("v", -1.0, 1.0)
 NORMAL = ("n", 0.0, 0.0)
+TANGENT = ("a", 0.0, 0.0)
 TEXTURE = ("t", 0.0, 0.0)
 SWITCH = (False, True)
 
@@ -221,8 +222,9 @@ VALUES = {
         },
         weight=0.5,
     ),
+    # About x and y, a plane has no tangents.
     "ShaderNodeTangent": Kind(
-        {}, {"Tangent": "v"}, {"direction_type": ("RADIAL", "UV_MAP"), "axis": ("X", "Y", "Z")}, special=("uv_map",)
+        {}, {"Tangent": "v"}, {"direction_type": ("RADIAL", "UV_MAP"), "axis": ("Z",)}, special=("uv_map",)
     ),
     "ShaderNodeMapping": Kind(
         {"Vector": TEXTURE, "Location": V, "Rotation": ("v", -2.0, 2.0), "Scale": ("v", 0.5, 2.0)},

@@ -109,11 +109,12 @@ class Trees:
         can_link = self.budget > 0 and depth < _DEEPEST
         if type_ == "s":
             return self._shader(tree, depth + 1) if dice.chance(0.93) else None
-        if type_ == "n":
+        if type_ in "na":
             can_link = can_link and tree not in WORLDS
-            link = self._at(tree, dice.pick(node_kinds.NORMALS), "v", depth) if can_link and dice.chance(0.12) else None
-            # Whether light is before or behind a tangent, rounding decides.
-            return None if link is None or link[1] == "Tangent" else link
+            wanted = node_kinds.NORMALS if type_ == "n" else ("ShaderNodeTangent",)
+            link = self._at(tree, dice.pick(wanted), "v", depth) if can_link and dice.chance(0.12) else None
+            # Whether light is before or behind a tangent, rounding decides; and which way a tangent along a normal points.
+            return link if link is None or (link[1] == "Tangent") == (type_ == "a") else None
         if type_ == "t":
             return self._at(tree, dice.pick(node_kinds.PLACES), "v", depth) if can_link and dice.chance(0.6) else None
         share = 0.85 if key in kind.always else 0.25

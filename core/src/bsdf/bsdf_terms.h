@@ -111,16 +111,16 @@ template <class F> Vec3<F> Bsdf<F>::albedo() const {
 }
 
 // Returns the colour of the transmitted light for the passes: the share that a smooth surface lets through; since 5.2, the
-// share that the facets do not reflect in the mean.
+// share that the facets do not reflect in the mean, even where they reflect all.
 template <class F> LANCER_LANE Vec3<F> shown_through(const Lobe<F> &lobe) {
   using V = Vec3<F>;
-  if (lobe.rules < Rules::Blender52 || !is_facets(lobe) || !splits(lobe))
+  if (lobe.rules < Rules::Blender52 || !is_facets(lobe) || !refracts(lobe) || !reflects(lobe))
     return lobe.through;
   const V reflected = lobe.albedo - lobe.through, none(F(0.0f));
   const auto channel = [](F whole, F back, F tint) { return select(tint > 0.0f, whole - back / tint, whole); };
   const V kept(channel(lobe.color.x, reflected.x, lobe.reflection.x), channel(lobe.color.y, reflected.y, lobe.reflection.y),
                channel(lobe.color.z, reflected.z, lobe.reflection.z));
-  return select(black(lobe.through), none, lobe.transmission * max(kept, none));
+  return lobe.transmission * max(kept, none);
 }
 
 template <class F> Vec3<F> Bsdf<F>::shown(Component component) const {

@@ -111,17 +111,19 @@ template <class F> uint8_t add_frame(Bsdf<F> &bsdf, const Vec3<F> &n) { return a
 
 // Bump correction where a lobe's normal and the shading normal differ: no light from behind, and a smooth terminator.
 
-// Returns whether a lobe has a smooth terminator under bump: lobes that scatter widely.
+// Returns whether a lobe has a smooth terminator under bump: lobes that scatter widely, and before 5.0 velvet.
 template <class F> bool ends_smoothly(const Lobe<F> &lobe) {
+  if (is_matte(lobe, Matte::Velvet))
+    return lobe.rules < Rules::Blender50;
   return lobe.shape == LobeShape::Lambert || lobe.shape == LobeShape::Matte || lobe.shape == LobeShape::Sheen;
 }
 
 // Returns the lanes where bump attenuates a direction, as in Cycles. It attenuates a lobe's own samples only if the lobe
-// reflects widely; it attenuates all other light for every lobe except velvet.
+// reflects widely; it attenuates all other light for every lobe except velvet before 5.0.
 template <class F> LANCER_LANE MaskOf<F> bump_acts(const Lobe<F> &lobe, MaskOf<F> drawn) {
   if (matte_transmits(lobe))
     return !drawn;
-  if (is_matte(lobe, Matte::Velvet))
+  if (is_matte(lobe, Matte::Velvet) && lobe.rules < Rules::Blender50)
     return drawn;
   return ends_smoothly(lobe) ? uniform<F>(true) : !drawn;
 }

@@ -77,13 +77,9 @@ template <class F> Triangle<F> triangle_of(const Site<F> &site, const AttributeL
 
 template <class F> Steps<F> steps_at(const Node &node, const Site<F> &site) {
   using D = DoubleOf<F>;
-  using V3 = Vector3<F>;
-  const F one(1.0f);
   Steps<F> r;
-  const V3 &ng = site.ng;
-  const auto diagonal = (ng.x == ng.y) & (ng.x == ng.z);
-  const V3 along = select(diagonal, cross(V3(-one, one, one), ng), cross(V3(one), ng));
-  r.x = normalize(widen(along));
+  const Vector3<F> &ng = site.ng;
+  r.x = normalize(widen(across(ng)));
   r.y = cross(widen(ng), r.x);
   const D footprint = widen(site.footprint), size = footprint / D(site.user_scale());
   r.px = r.x * size;

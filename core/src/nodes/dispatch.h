@@ -16,7 +16,7 @@ template <class F> Value<F> node_value(const Program &program, const Inputs<F> &
   case LANCER_NODE_COORDINATE:
     return coordinate_node(node, site);
   case LANCER_NODE_ATTRIBUTE:
-    return attribute_node(node, site);
+    return attribute_node(node, node.flags & LANCER_ATTRIBUTE_STILL ? site.standing() : site);
   case LANCER_NODE_IMAGE:
     return image_node(in, site);
   case LANCER_NODE_ENVIRONMENT:

@@ -75,6 +75,12 @@ template <class F> Tangent<F> tangent_at(const Node &node, const Site<F> &site, 
   return r;
 }
 
+// Returns the direction across a normal that Cycles takes where it needs any.
+template <class F> LANCER_LANE Vector3<F> across(const Vector3<F> &n) {
+  const F one(1.0f);
+  return select((n.x == n.y) & (n.x == n.z), cross(Vector3<F>(-one, one, one), n), cross(Vector3<F>(one), n));
+}
+
 template <class F> Value<F> normal_map_node(const Inputs<F> &in, const Site<F> &site) {
   using V3 = Vector3<F>;
   // The world has no tangents.
@@ -112,7 +118,9 @@ template <class F> Value<F> normal_map_node(const Inputs<F> &in, const Site<F> &
 template <class F> Value<F> tangent_node(const Node &node, const Site<F> &site) {
   using V3 = Vector3<F>;
   const F zero(0.0f);
-  // The world has directions as generated coordinates, but no tangents along u, and none of Geometry.
+  // The world has directions as generated coordinates, but no tangents along u; those of Geometry depend on the version.
+  if (!site.surface && node.flags & 2)
+    return solid(unit_or_zero(across(site.ns)));
   if (!site.surface && (node.option == 3 || node.flags & 1))
     return solid(V3(zero));
   V3 t;

@@ -34,7 +34,7 @@ inline constexpr int kMaxLobes = 64;
 // Microfacet distribution of a rough surface.
 enum class Facets : uint32_t { Ggx = 0, Beckmann = 1, AshikhminShirley = 2, MultiGgx = 3 };
 // The Blender versions whose definitions hold: 3.x, 4.0 ... 4.4, 4.5 and newer.
-enum class Rules : uint32_t { Blender3 = 0, Blender4 = 1, Blender45 = 2, Blender52 = 3 };
+enum class Rules : uint32_t { Blender3 = 0, Blender4 = 1, Blender45 = 2, Blender50 = 3, Blender52 = 4 };
 
 // Kinds of parameters, see lancer_parameter.
 enum class ParameterKind { Color, Share, Amount, Index, Denser, Turns, Direction };

@@ -70,7 +70,7 @@ template <class Chosen>
 void PathIntegrator::add_light_met(size_t i, uint32_t number, const LightHit &met, const Chosen &chosen) {
   const Path &path = paths_[i];
   const Ray &ray = rays_[i];
-  if (!(met.pdf > 0.0) || !(path.kinds & ~scene_.lights.hidden_from(number)))
+  if (!(met.pdf > 0.0) || !path.shows_light(scene_.lights.hidden_from(number)))
     return;
   // A sun lies behind all surfaces, beyond the clip end.
   const double begin = path.passed + ray.tmin * glm::length(ray.d);
@@ -103,7 +103,7 @@ void PathIntegrator::miss(size_t number) {
     if (!(settings_.passes & 1u << LANCER_PASS_ENVIRONMENT))
       return;
   }
-  if (!(path.kinds & ~scene_.world.hidden_from))
+  if (!path.shows_light(scene_.world.hidden_from))
     return;
   const Environment &environment = scene_.lights.environment();
   if (!environment.varies())
