@@ -435,7 +435,7 @@ PARAMETERS = {
         "sheen": ("amount", 0.0),
         "sheen_roughness": ("share", 0.5),
         "sheen_tint": ("color", (1.0, 1.0, 1.0)),
-        "emission": ("color", (0.0, 0.0, 0.0)),
+        "emission": ("vector", (0.0, 0.0, 0.0)),
     },
     Lobe: {
         "weight": ("color", (1.0, 1.0, 1.0)),

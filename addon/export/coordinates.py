@@ -84,7 +84,13 @@ def _texture_coordinate(graph, site, output):
     if node.from_instancer and which in (Coordinate.GENERATED, Coordinate.UV):
         graph.tell(site, "coordinates from the instancer are not supported, the object's own are used")
     if which == Coordinate.NORMAL:
+        if isinstance(graph.normal, NodeRef):
+            return graph.emit(NodeKind.DISPLACEMENT, 1.0, 0.0, 1.0, graph.normal)
         return graph.emit(NodeKind.COORDINATE, option=which, flags=_NORMAL_FLAGS)
+    if which == Coordinate.REFLECTION and isinstance(graph.normal, NodeRef):
+        incoming = coordinate(graph, Coordinate.INCOMING)
+        v = VectorOperation
+        return graph.vector_op(v.REFLECT, graph.vector_op(v.SCALE, incoming, scale=-1.0), graph.normal)
     if which != Coordinate.OBJECT or node.object is None:
         return coordinate(graph, which)
     graph.objects.add(identity(node.object))
@@ -181,16 +187,16 @@ def _geometry(graph, site, output):
 def default_tangent(graph):
     """Return the tangent around the object's z axis, Cycles' default for anisotropic surfaces."""
     graph.attributes.add("generated")
-    return graph.emit(NodeKind.TANGENT, option=_RADIAL["Z"], flags=_TANGENT_OF_WORLD)
+    return graph.emit(NodeKind.TANGENT, graph.normal, option=_RADIAL["Z"], flags=_TANGENT_OF_WORLD)
 
 
 def _tangent(graph, site, output):
     node = site.node
     if node.direction_type == "RADIAL":
         graph.attributes.add("generated")
-        return graph.emit(NodeKind.TANGENT, option=_RADIAL[node.axis])
+        return graph.emit(NodeKind.TANGENT, graph.normal, option=_RADIAL[node.axis])
     want_tangents(graph, node.uv_map)
-    return graph.emit(NodeKind.TANGENT, option=_ALONG_U, name=attribute_name(node.uv_map))
+    return graph.emit(NodeKind.TANGENT, graph.normal, option=_ALONG_U, name=attribute_name(node.uv_map))
 
 
 def want_tangents(graph, uv_map):

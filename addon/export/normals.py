@@ -29,15 +29,14 @@ def _normal_map(graph, site, output):
     if getattr(node, "convention", "OPENGL") == "DIRECTX":
         color = graph.vector_op(VectorOperation.MULTIPLY_ADD, color, (1.0, -1.0, 1.0), (0.0, 1.0, 0.0))
     if space != _SPACES["TANGENT"]:
-        return graph.emit(NodeKind.NORMAL_MAP, strength, color, option=space)
+        return graph.emit(NodeKind.NORMAL_MAP, strength, color, graph.normal, option=space)
     want_tangents(graph, node.uv_map)
     if RULES != Rules.BLENDER_3 or is_constant(strength, 1.0):
-        return graph.emit(
-            NodeKind.NORMAL_MAP, strength, color, option=space, name=attribute_name(node.uv_map), flags=_UNIT_NORMAL
-        )
+        name = attribute_name(node.uv_map)
+        return graph.emit(NodeKind.NORMAL_MAP, strength, color, graph.normal, option=space, name=name, flags=_UNIT_NORMAL)
     # Blender 3 interpolates linearly from the normal to the mapped one.
     v = VectorOperation
-    mapped = graph.emit(NodeKind.NORMAL_MAP, 1.0, color, option=space, name=attribute_name(node.uv_map))
+    mapped = graph.emit(NodeKind.NORMAL_MAP, 1.0, color, graph.normal, option=space, name=attribute_name(node.uv_map))
     plain = _as_value(graph, graph.normal)
     share = graph.op(MathOperation.MAXIMUM, strength, 0.0)
     way = graph.vector_op(v.SCALE, graph.vector_op(v.SUBTRACT, mapped, plain), scale=share)
@@ -61,7 +60,8 @@ def _as_value(graph, normal):
 
 def bump(graph, first, height, strength, distance, normal, width, invert=False, undisplaced=False):
     """Return the normal bumped by a height; undisplaced evaluates the height on the surface before true displacement."""
-    if not isinstance(height, NodeRef):
+    # An even height changes no normal but one after displacement, which becomes the one before.
+    if not isinstance(height, NodeRef) and not undisplaced:
         return normal
     flags = (_INVERTED if invert else 0) | (_UNDISPLACED if undisplaced else 0)
     if undisplaced and bpy.app.version >= (5, 0):

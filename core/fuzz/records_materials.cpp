@@ -106,6 +106,7 @@ lancer_principled Records::principled() {
   const auto value = [&](ParameterKind kind, float given) {
     switch (kind) {
     case ParameterKind::Direction:
+    case ParameterKind::Vector:
       return vector();
     case ParameterKind::Index:
     case ParameterKind::Denser:

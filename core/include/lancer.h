@@ -235,7 +235,7 @@ enum lancer_node_kind {
   LANCER_NODE_GREY = 12,         /* luminance of input 0 with the weights matrix[0 ... 2] */
   LANCER_NODE_FRESNEL = 13,      /* inputs: IOR, normal */
   LANCER_NODE_LAYER_WEIGHT = 14, /* inputs: blend, normal; option 0 Fresnel, 1 facing */
-  LANCER_NODE_NORMAL_MAP = 15,   /* inputs: strength, colour; option 0 tangent, 1 object, 2 world, 3 object with y, z
+  LANCER_NODE_NORMAL_MAP = 15,   /* inputs: strength, colour, normal; option 0 tangent, 1 object, 2 world, 3 object with y, z
                                     inverted (Blender's), 4 world with y, z inverted; name: the UV map, whose tangents are
                                     attribute "tangent:" + name; flag 1: normalise the interpolated normal of the frame, else
                                     keep its length */
@@ -243,8 +243,8 @@ enum lancer_node_kind {
                                surface before displacement, in object space, 4: give a flat face, too, its normal before
                                displacement. Nodes [first, this) compute the height; they are evaluated at the hit point, to
                                its right and above it */
-  LANCER_NODE_TANGENT = 17, /* option 0, 1, 2: radial about x, y, z of GENERATED; 3: along u of the UV map name; flags in
-                               the world: 1: 0; 2: across the ray */
+  LANCER_NODE_TANGENT = 17, /* inputs: normal; option 0, 1, 2: radial about x, y, z of GENERATED; 3: along u of the UV map name;
+                               flags in the world: 1: 0; 2: across the ray */
   LANCER_NODE_CLAMP = 18,   /* inputs: value, low, high */
   LANCER_NODE_DISPLACEMENT = 19, /* inputs: height, midlevel, scale, normal; option: space of scale, 0 object, 1 world.
                                     Returns an offset in object space */
@@ -577,7 +577,7 @@ typedef struct lancer_principled {
   lancer_parameter sheen;                  /* [amount 0] */
   lancer_parameter sheen_roughness;        /* [share 0.5] */
   lancer_parameter sheen_tint;             /* [color 1] */
-  lancer_parameter emission;               /* [color 0] radiance, below sheen and coat */
+  lancer_parameter emission;               /* [vector 0] radiance, below sheen and coat; may be negative */
 } lancer_principled;
 
 typedef struct lancer_lobe {

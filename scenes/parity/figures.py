@@ -160,9 +160,9 @@ def _figures(difference, noise, scale, level, spread=None):
 
 
 def _effective_count(ratio):
-    """Returns the number of equal blocks whose mean is as uncertain as that of these."""
+    """Returns the number of equal blocks whose mean is as uncertain as that of these; 1 where the level is 0."""
     worst = ratio.max(axis=-1)
-    return float(worst.sum() ** 2 / (worst**2).sum()) if worst.any() else 1.0
+    return float(worst.sum() ** 2 / (worst**2).sum()) if worst.any() and np.isfinite(worst).all() else 1.0
 
 
 def _root_mean_square(ratio):

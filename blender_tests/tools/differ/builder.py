@@ -1,5 +1,7 @@
 """build(scene, records): the records as a Blender scene, in any Blender. What is missing is left out."""
 
+import contextlib
+
 import bpy
 from mathutils import Matrix
 
@@ -141,10 +143,9 @@ class Builder:
             for setting, value in fields.get(key, {}).items():
                 setattr(owner, setting, self.find(value) if setting == "focus_object" else value)
         for setting, value in fields.get("panorama", {}).items():
-            try:
+            # Versions lack some kinds of panoramas and their settings.
+            with contextlib.suppress(AttributeError, TypeError):
                 setattr(camera if hasattr(camera, setting) else camera.cycles, setting, value)
-            except TypeError:
-                continue
 
     # ---- objects ----
 

@@ -120,8 +120,8 @@ SCENES = {
     "their alpha": _of_world(_node("Attribute", attribute_name="generated"), "Alpha"),
     "world hidden from diffuse rays behind paper": [
         _frame(bounces=2),
-        *_SKY[1:],
         Record("world", "World", {"hidden_from": ["diffuse"]}),
+        *_SKY[1:],
         *_thing("ball", _node("BsdfTranslucent"), _shown(["@M/1", "BSDF"])),
     ],
     "displacement of a surface without a shader": [
@@ -165,6 +165,56 @@ SCENES = {
             _node("BsdfSheen", {"Normal": ["@M/1", "Vector"]}, distribution="ASHIKHMIN"),
             _shown(["@M/2", "BSDF"]),
             scale=[5.0] * 3,
+        ),
+    ],
+    "normal of a map that is not there, above a bump": [
+        _frame(kind="DATA", passes=["Normal"]),
+        *_thing(
+            "ball",
+            _node("NewGeometry"),
+            _node("TexNoise", {"Vector": ["@M/1", "Position"]}),
+            _node("NormalMap", {"Color": [0.8, 0.7, 0.9]}, uv_map="Missing"),
+            _node("BsdfDiffuse", {"Normal": ["@M/3", "Normal"]}),
+            _node("OutputMaterial", {"Surface": ["@M/4", "BSDF"], "Displacement": ["@M/2", "Fac"]}),
+            mesh={"smooth": "yes"},
+        ),
+    ],
+    "negative light under sheen": [
+        _frame(),
+        *_thing(
+            "plane",
+            _node("NewGeometry"),
+            _node("VectorMath", {"Vector": ["@M/1", "Normal"], "Vector_001": [-0.5] * 3}, operation="MULTIPLY"),
+            _node("BsdfPrincipled", {"Sheen Weight": 0.3, "Emission Color": _WHITE, "Emission Strength": ["@M/2", "Vector"]}),
+            _shown(["@M/3", "BSDF"]),
+        ),
+    ],
+    "mapping of a constant place": [
+        _frame(),
+        *_thing(
+            "plane",
+            _node("VectorMath", {"Vector": [0.3, 0.2, 0.1]}),
+            {**_node("TexNoise", {"Vector": ["@M/1", "Vector"]}), "mapping": {"translation": [0.6, 0.4, 0.9]}},
+            _shown(["@M/2", "Color"]),
+        ),
+    ],
+    "mist of a holdout object that is clear": [
+        _frame(passes=["Mist"]),
+        *_thing("ball", _node("BsdfPrincipled", {"Alpha": 0.3}), _shown(["@M/1", "BSDF"]), settings={"is_holdout": True}),
+    ],
+    "depth guide behind the last of the glass": [
+        _frame(bounces=1, passes=["Denoising Depth"]),
+        *_thing("ball", _node("BsdfGlass"), _shown(["@M/1", "BSDF"]), mesh={"smooth": "yes"}),
+    ],
+    "group without an output": [
+        _frame(),
+        Record("group", "Group", {"inputs": {}, "outputs": {"Out": "f"}}),
+        *_thing(
+            "plane",
+            _node("Group", node_tree="@Group"),
+            _node("Emission", {"Color": [0.2, 0.3, 0.4], "Strength": 2.0}),
+            _node("MixShader", {"Fac": ["@M/1", "Out"], "Shader": ["@M/2", "Emission"]}),
+            _shown(["@M/3", "Shader"]),
         ),
     ],
     "metal that absorbs little": [

@@ -209,7 +209,8 @@ LANCER_LANE Vec3<F> reflected_albedo(const MicrofacetPlan<F> &plan, F cos_o, con
     const F f0 = f0_of_ior(lobe.ior);
     mean = select(lobe.ior > 1.0f, (f0 + (1.0f - f0) * tables.mix(plan, cos_o)) * lobe.reflection, mean);
   }
-  return select(black(smooth.reflected), V(F(0.0f)), mean);
+  // Before 5.2 no facet reflects in the mean where a smooth surface reflects nothing.
+  return lobe.rules >= Rules::Blender52 ? mean : select(black(smooth.reflected), V(F(0.0f)), mean);
 }
 
 // Whether the albedo needs only the mean over the facets: it does not need the response of a smooth surface, which would not be

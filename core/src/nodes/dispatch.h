@@ -48,7 +48,7 @@ template <class F> Value<F> node_value(const Program &program, const Inputs<F> &
   case LANCER_NODE_BUMP:
     return bump_node(program, in, site);
   case LANCER_NODE_TANGENT:
-    return tangent_node(node, site.standing());
+    return tangent_node(in, site.standing());
   case LANCER_NODE_CLAMP:
     return clamp_node(in);
   case LANCER_NODE_DISPLACEMENT:

@@ -87,6 +87,7 @@ template <class F> Value<F> normal_map_node(const Inputs<F> &in, const Site<F> &
   if (!site.surface && in.node.option == 0)
     return solid(site.ns);
   const F zero(0.0f), one(1.0f);
+  const V3 ns = in.normal(2, site);
   F strength = in.scalar(0);
   V3 color = F(2.0f) * (in[1] - V3(F(0.5f))), n;
   auto usable = uniform<F>(true);
@@ -109,18 +110,20 @@ template <class F> Value<F> normal_map_node(const Inputs<F> &in, const Site<F> &
     n = object ? normal_to_world(site, color) : unit_or_zero(color);
     n = select(site.backfacing, -n, n);
     strength = max(strength, zero);
-    n = select(strength != one, unit_or_zero(site.ns + (n - site.ns) * strength), n);
+    n = select(strength != one, unit_or_zero(ns + (n - ns) * strength), n);
   }
   usable = usable & (!black(n)) & is_finite(n.x) & is_finite(n.y) & is_finite(n.z);
-  return solid(select(usable, n, site.ns));
+  return solid(select(usable, n, ns));
 }
 
-template <class F> Value<F> tangent_node(const Node &node, const Site<F> &site) {
+template <class F> Value<F> tangent_node(const Inputs<F> &in, const Site<F> &site) {
   using V3 = Vector3<F>;
+  const Node &node = in.node;
+  const V3 ns = in.normal(0, site);
   const F zero(0.0f);
   // The world has directions as generated coordinates, but no tangents along u; those of Geometry depend on the version.
   if (!site.surface && node.flags & 2)
-    return solid(unit_or_zero(across(site.ns)));
+    return solid(unit_or_zero(across(ns)));
   if (!site.surface && (node.option == 3 || node.flags & 1))
     return solid(V3(zero));
   V3 t;
@@ -135,7 +138,7 @@ template <class F> Value<F> tangent_node(const Node &node, const Site<F> &site) 
     t = node.option == 0 ? V3(zero, -g.z, g.y) : node.option == 1 ? V3(-g.z, zero, g.x) : V3(-g.y, g.x, zero);
   }
   t = normal_to_world(site, t);
-  return solid(select(found, cross(site.ns, unit_or_zero(cross(t, site.ns))), V3(zero)));
+  return solid(select(found, cross(ns, unit_or_zero(cross(t, ns))), V3(zero)));
 }
 
 template <class F> Value<F> displacement_node(const Inputs<F> &in, const Site<F> &site) {

@@ -53,11 +53,11 @@ Shape shape_of(const lancer_node &node) {
   case LANCER_NODE_LAYER_WEIGHT:
     return {2, 2, false};
   case LANCER_NODE_NORMAL_MAP:
-    return {2, 5, false};
+    return {3, 5, false};
   case LANCER_NODE_BUMP:
     return {5, 0, false};
   case LANCER_NODE_TANGENT:
-    return {0, 4, false};
+    return {1, 4, false};
   case LANCER_NODE_CLAMP:
     return {3, 0, false};
   case LANCER_NODE_DISPLACEMENT:

@@ -33,13 +33,15 @@ inline constexpr int kMaxLobes = 64;
 
 // Microfacet distribution of a rough surface.
 enum class Facets : uint32_t { Ggx = 0, Beckmann = 1, AshikhminShirley = 2, MultiGgx = 3 };
-// The Blender versions whose definitions hold: 3.x, 4.0 ... 4.4, 4.5 and newer.
+// The Blender versions whose definitions hold: 3.x, 4.0 to 4.4, 4.5, 5.0 and 5.1, 5.2 and newer.
 enum class Rules : uint32_t { Blender3 = 0, Blender4 = 1, Blender45 = 2, Blender50 = 3, Blender52 = 4 };
 
 // Kinds of parameters, see lancer_parameter.
-enum class ParameterKind { Color, Share, Amount, Index, Denser, Turns, Direction };
-template <class F, ParameterKind kind>
-using ValueOf = std::conditional_t<kind == ParameterKind::Color || kind == ParameterKind::Direction, Vec3<F>, F>;
+enum class ParameterKind { Color, Share, Amount, Index, Denser, Turns, Direction, Vector };
+constexpr bool is_of_three(ParameterKind kind) {
+  return kind == ParameterKind::Color || kind == ParameterKind::Direction || kind == ParameterKind::Vector;
+}
+template <class F, ParameterKind kind> using ValueOf = std::conditional_t<is_of_three(kind), Vec3<F>, F>;
 
 // Values vary by lane; the kinds are the same in all lanes.
 template <class F> struct LobeInputs {

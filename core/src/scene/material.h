@@ -112,6 +112,8 @@ template <class F, class Values> struct ParameterReader {
       return ior(parameter, 1.0f);
     else if constexpr (kind == ParameterKind::Turns)
       return turns(parameter);
+    else if constexpr (kind == ParameterKind::Vector)
+      return values(parameter);
     else
       return direction(parameter);
   }

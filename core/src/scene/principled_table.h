@@ -22,4 +22,4 @@
   X(Amount, sheen, "sheen", 0.0f)                                                                                              \
   X(Share, sheen_roughness, "sheen roughness", 0.5f)                                                                           \
   X(Color, sheen_tint, "sheen tint", 1.0f)                                                                                     \
-  X(Color, emission, "emission", 0.0f)
+  X(Vector, emission, "emission", 0.0f)

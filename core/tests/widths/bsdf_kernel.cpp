@@ -134,7 +134,7 @@ void report_all(Bsdf<F> &bsdf, const Place *of, Report &add) {
   for (const Component component : {Component::Diffuse, Component::Glossy, Component::Transmission})
     add("shown", bsdf.shown(component));
   add("mean_normal", mean_normal(bsdf));
-  const Mixture<F> mixture = mix(bsdf, Vec3<F>(F(0.0f)), true);
+  const Mixture<F> mixture = mix(bsdf, Vec3<F>(F(0.0f)), uniform<F>(false), true);
   add("mix: normal", mixture.normal);
   add("mix: diffuse", mixture.diffuse);
   add("mix: specular", mixture.specular);

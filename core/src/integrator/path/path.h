@@ -70,7 +70,6 @@ private:
   void draw_numbers(uint32_t wanted, uint32_t count, uint32_t number);
   void ask_nodes();
   void cut_holes();
-  void keep_vertices();
   void record_surfaces();
   void take_emission(uint32_t lane);
   void ask_lights();
@@ -91,6 +90,7 @@ private:
   void send_occlusion_ray(uint32_t lane, const glm::vec3 &wi, const glm::vec3 &weight);
   void count_occluded();
   // Continuing paths.
+  glm::vec3 recorded_opacity(uint32_t lane) const;
   bool stays_in_view(uint32_t lane) const;
   void pass_straight_on(Path &path, const Surface &surface, const Ray &ray, double t, const glm::vec3 &weight);
   static bool survives(uint32_t scatterings, float u, float sharers, glm::vec3 &beta);

@@ -171,8 +171,8 @@ void PathIntegrator::shade_block() {
   ask_nodes();
   cut_holes();
   surfaces_.find_lobes();
-  if (trace_)
-    keep_vertices();
+  for (uint32_t lane = 0; trace_ && lane < surfaces_.count(); ++lane)
+    keep_vertex(paths_[waiting_[lane].number], surfaces_.surface(lane), surfaces_.hit(lane).t);
   if (!film_.only_combined())
     record_surfaces();
   for (uint32_t lane = 0; lane < surfaces_.count(); ++lane)
@@ -188,12 +188,8 @@ void PathIntegrator::shade_block() {
   surfaces_.clear();
 }
 
-void PathIntegrator::keep_vertices() {
-  for (uint32_t lane = 0; lane < surfaces_.count(); ++lane)
-    keep_vertex(paths_[waiting_[lane].number], surfaces_.surface(lane), surfaces_.hit(lane).t);
-}
-
-// Fills the passes of the surfaces that the camera sees. As in Cycles, a surface that ends the path gives only its emission.
+// Fills the passes of the surfaces that the camera sees. As in Cycles, a surface that ends the path gives only its emission;
+// the guides count its distance, unless it lies behind too many transparent layers.
 void PathIntegrator::record_surfaces() {
   uint32_t seen = 0, guiding = 0;
   for (uint32_t lane = 0; lane < surfaces_.count(); ++lane) {
@@ -201,7 +197,7 @@ void PathIntegrator::record_surfaces() {
     if (waiting_[lane].nothing)
       continue;
     seen |= uint32_t(path.in_view && !waiting_[lane].ends) << lane;
-    guiding |= uint32_t(film_.wants_guides(path) && !waiting_[lane].ends) << lane;
+    guiding |= uint32_t(film_.wants_guides(path) && !path.last) << lane;
   }
   if (!(seen | guiding))
     return;
@@ -217,7 +213,7 @@ void PathIntegrator::record_surfaces() {
       surface = surfaces_.surface(lane);
     else
       surface.p = get(block_.p, lane);
-    film_.record(path, surface, *block_.material[lane], get(block_.normal, lane), surfaces_.opacity(lane),
+    film_.record(path, surface, *block_.material[lane], get(block_.normal, lane), recorded_opacity(lane),
                  hits_[waiting.number].t);
     for (uint32_t component = 0; component < 3 && passes_.components(); ++component)
       film_.add_color(path, component, get(block_.shown[component], lane));
@@ -234,14 +230,14 @@ bool PathIntegrator::stays_in_view(uint32_t lane) const {
          block_.alpha2[lane] <= settings_.glass_alpha2;
 }
 
-// Adds the surface's own emission, and its denoising guides unless it ends the path.
+// Adds the surface's own emission, and its denoising guides.
 void PathIntegrator::take_emission(uint32_t lane) {
   const Waiting &waiting = waiting_[lane];
   const Path &path = paths_[waiting.number];
   const glm::vec3 emission = surfaces_.emission[lane] + get(block_.emission, lane);
   if (emission != glm::vec3(0.0f))
     add_emission(path, surfaces_.surface(lane), emission);
-  if (!waiting.ends && film_.wants_guides(path))
+  if (!path.last && film_.wants_guides(path))
     film_.add_guides(path, waiting.mixture, get(block_.wo, lane), surfaces_.transmittance[lane],
                      hits_[waiting.number].t * block_.length[lane]);
 }

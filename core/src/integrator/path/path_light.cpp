@@ -155,11 +155,15 @@ void PathIntegrator::send_shadow_of(uint32_t lane) {
   lights_.write_shadow_ray(lane, ray);
 }
 
+// Cycles' passes count the whole surface of a holdout object, whatever its opacity.
+glm::vec3 PathIntegrator::recorded_opacity(uint32_t lane) const {
+  return block_.holes >> lane & 1 ? glm::vec3(1.0f) : surfaces_.opacity(lane);
+}
+
 // Samples ambient occlusion by the cosine around the mean normal of the diffuse lobes.
 void PathIntegrator::look_around(uint32_t lane) {
   const Path &path = paths_[waiting_[lane].number];
-  // Cycles counts the whole surface of a holdout object, whatever its opacity.
-  const glm::vec3 weight = block_.holes >> lane & 1 ? path.beta : path.beta * surfaces_.opacity(lane);
+  const glm::vec3 weight = path.beta * recorded_opacity(lane);
   if (block_.looks_itself >> lane & 1)
     send_occlusion_ray(lane, get(block_.occlusion_wi, lane), weight);
   else

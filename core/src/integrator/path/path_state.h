@@ -59,7 +59,8 @@ struct Path {
   uint32_t leader_of(uint32_t count) const {
     return std::min(uint32_t(sampler.get1(vertex_dimension() + kVertexRoulette) * float(count)), count - 1);
   }
-  // Whether the ray shows a light or an environment that is hidden from some kinds of rays. Diffuse transmission is of two kinds.
+  // Whether the ray shows a light or an environment that is hidden from some kinds of rays. Diffuse transmission is of two
+  // kinds.
   bool shows_light(uint32_t hidden_from) const { return !((kinds | (story.kinds & LANCER_RAY_DIFFUSE)) & hidden_from); }
   // Returns the query with which the last scattering chose its light.
   LightQuery light_query() const { return LightQuery(from, normal, transmits); }

@@ -56,8 +56,9 @@ template <class F> struct Mixture {
   F all{0.0f}, matt{0.0f};
 };
 
-// Without blending, transmitted light is treated as mirrored.
-template <class F> LANCER_LANE Mixture<F> mix(const Bsdf<F> &bsdf, const Vec3<F> &transmittance, bool blended) {
+// Without blending, transmitted light is treated as mirrored. ended: lanes at the end of a path, where no lobe scatters.
+template <class F>
+LANCER_LANE Mixture<F> mix(const Bsdf<F> &bsdf, const Vec3<F> &transmittance, MaskOf<F> ended, bool blended) {
   const F zero(0.0f);
   Mixture<F> mixture;
   if (!blended) {
@@ -67,7 +68,7 @@ template <class F> LANCER_LANE Mixture<F> mix(const Bsdf<F> &bsdf, const Vec3<F>
   }
   for (int i = 0; i < bsdf.count; ++i) {
     const Lobe<F> &lobe = bsdf.lobes[i];
-    const MaskOf<F> there = !black(lobe.color);
+    const MaskOf<F> there = (!black(lobe.color)) & !ended;
     const Vec3<F> albedo = lobe.rules < Rules::Blender52 ? lobe.albedo : lobe.albedo - lobe.through + shown_through(lobe);
     const F weight = select(there, abs(mean(albedo)), zero), share = matt_share(lobe, blended);
     mixture.normal += weight * bsdf.frames[lobe.frame].n;

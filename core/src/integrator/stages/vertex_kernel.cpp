@@ -143,7 +143,7 @@ void describe(VertexBlock &block) {
       store3(block.shown[component], first, bsdf.shown(static_cast<Component>(component)));
     if (!block.wants_mixture)
       continue;
-    const Mixture<F> mixture = mix(bsdf, load3(block.transmittance, first), block.blended != 0);
+    const Mixture<F> mixture = mix(bsdf, load3(block.transmittance, first), some(block.ends, first), block.blended != 0);
     store3(block.mixed_normal, first, mixture.normal);
     store3(block.mixed_diffuse, first, mixture.diffuse);
     store3(block.mixed_specular, first, mixture.specular);
