@@ -47,6 +47,12 @@ def has_tangents(mesh):
     return any(attribute.name.startswith(_TANGENT) for attribute in mesh.attributes)
 
 
+def missing_tangents(wanted, mesh):
+    """Return the names of the UV maps whose tangents are wanted and that an exported mesh lacks."""
+    have = {attribute.name for attribute in mesh.attributes}
+    return sorted(_name_in_blender(name[len(_TANGENT) :]) for name in wanted if name.startswith(_TANGENT) and name not in have)
+
+
 def named_attributes(wanted):
     """Return the names in Blender of the wanted attributes of a mesh, without those that Lancer computes."""
     own = (_TANGENT, POLYGONS, RENDER_COLOR)

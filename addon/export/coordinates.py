@@ -237,7 +237,12 @@ def _light_path(graph, site, output):
 
 def _transform(graph, site, output):
     node = site.node
-    return graph.value(site, 0) if node.convert_from == node.convert_to else None
+    if node.convert_from != node.convert_to:
+        return None
+    value = graph.value(site, 0)
+    # Blender 3 normalises normals that stay in their space, too.
+    is_unit = node.vector_type == "NORMAL" and bpy.app.version < (4, 0)
+    return graph.vector_op(VectorOperation.NORMALIZE, value) if is_unit else value
 
 
 READERS = {

@@ -5,10 +5,10 @@ from typing import NamedTuple
 import bpy
 import numpy as np
 
-from ..bindings.enums import InstanceFlag, InstanceKind, Ray, Shading
+from ..bindings.enums import InstanceFlag, InstanceKind, MaterialFlag, Ray, Shading
 from ..messages.severity import Severity
 from .arithmetic import is_constant
-from .attributes import POLYGONS, named_attributes
+from .attributes import POLYGONS, missing_tangents, named_attributes
 from .checks import check_object
 from .mesh import export_mesh, read_positions, shown_mesh
 from .visibility import object_hidden_from
@@ -102,6 +102,7 @@ class Objects:
             mesh, used = self._mesh(thing, owner, name, data_key, slots, self._colors_polygons(own), poll)
             if mesh < 0:
                 return -1, ""
+            self._tell_mesh(name, slots, self.meshes[mesh])
         else:
             placement, used = self._placement(thing, owner, name, kind, data_key), (0,)
             if placement < 0:
@@ -171,6 +172,16 @@ class Objects:
                 f"object '{name}': has no vertices to place its exact shape by, it is left out", severity=Severity.LEFT_OUT
             )
         return number
+
+    def _tell_mesh(self, name, slots, mesh):
+        """Add messages about what materials need and the mesh lacks, where Cycles shows something else."""
+        for uv_map in missing_tangents(self.materials.attributes(slots), mesh):
+            told = f"it has no UV map '{uv_map}' for tangents: anisotropic surfaces are even, Cycles shows them black"
+            self.messages.add(f"object '{name}': {told}", "feature:tangents without a UV map", severity=Severity.HINT)
+        keeps = any(self.materials.list[slot].flags & int(MaterialFlag.KEEP_NORMALS) for slot in slots)
+        if keeps and mesh.normals is None and (5, 0) <= bpy.app.version < (5, 2):
+            told = "flat faces with displacement and bump stay flat, this Blender's Cycles smooths them"
+            self.messages.add(f"object '{name}': {told}", "feature:smooth bump of flat faces", severity=Severity.HINT)
 
     def _tell_exact(self, name, slots):
         """Add a message about attributes and displacement that materials read and that an exact shape lacks."""

@@ -21,6 +21,7 @@ from .textures import legacy_mapping
 _SMOOTHEST = 1.0 if bpy.app.version < (4, 1) else float("inf")  # limit of the roughness of noise
 _REPEATS = bpy.app.version >= (4, 2)
 _HASHES_INTEGERS = bpy.app.version >= (5, 0)
+_MAPS_LINKS_ONLY = bpy.app.version >= (5, 0)  # the node's own mapping leaves constants as they are
 _IS_BOUNDED = bpy.app.version < (4, 0)
 _CONFUSES_LACUNARITY = (4, 0) <= bpy.app.version < (4, 3)  # a linked Smoothness is also used as the Lacunarity of Voronoi
 _LEAST = 1e-5  # lower limit of the Musgrave Texture's dimension and lacunarity
@@ -30,6 +31,8 @@ def _vector(graph, site):
     vector = graph.linked(site, ("Vector",), None)
     if vector is None:
         vector = coordinate(graph, Coordinate.GENERATED)
+    if _MAPS_LINKS_ONLY and not isinstance(vector, NodeRef):
+        return vector
     return legacy_mapping(graph, site, vector)
 
 

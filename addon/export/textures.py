@@ -15,7 +15,6 @@ from ..bindings.enums import (
     Projection,
     VectorOperation,
 )
-from ..bindings.shading import NodeRef
 from ..messages.severity import Severity
 from .arithmetic import divide, each
 from .coordinates import coordinate, mapping_matrix
@@ -28,7 +27,6 @@ _INTERPOLATION = {
     "Smart": Interpolation.CUBIC,
 }
 _STRAIGHT_COLOR = 256
-_MAPS_LINKS_ONLY = bpy.app.version >= (5, 0)
 _AXES = {"NONE": None, "X": 0, "Y": 1, "Z": 2}
 _MAGENTA = (1.0, 0.0, 1.0)
 # Before 5.2 Cycles clips the one texel that stands for a missing picture as any other.
@@ -94,12 +92,7 @@ def _has_color_under_alpha(image):
 
 
 def legacy_mapping(graph, site, vector):
-    """Apply the texture mapping stored inside nodes of old files: swap axes first, then transform.
-
-    Since 5.0 Cycles leaves constant vectors as they are.
-    """
-    if _MAPS_LINKS_ONLY and not isinstance(vector, NodeRef):
-        return vector
+    """Apply the texture mapping stored inside nodes of old files: swap axes first, then transform."""
     own = site.node.texture_mapping
     kind, location, scale = MappingType[own.vector_type], tuple(own.translation), tuple(own.scale)
     if kind in (MappingType.VECTOR, MappingType.NORMAL):

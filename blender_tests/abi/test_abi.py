@@ -117,7 +117,7 @@ def test_wrong_materials(raw):
         lobe = raw.lobe(kind=kind)
         lobe.distribution = 4
         refused_with(lobe, "distribution", "4")
-    for field, value in (("rules", 4), ("distribution", 4), ("option", 2)):
+    for field, value in (("rules", 5), ("distribution", 4), ("option", 2)):
         principled = raw.principled()
         setattr(principled, field, value)
         refused_with(raw.lobe(kind=abi.LobeKind.PRINCIPLED, principled=principled), field, str(value))

@@ -99,7 +99,7 @@ uint32_t Records::nodes(const Filled &filled, const lancer_node *&out) {
 
 lancer_principled Records::principled() {
   lancer_principled p = {};
-  p.rules = bytes_.choice(3);
+  p.rules = bytes_.choice(LANCER_RULES_BLENDER_52 + 1);
   p.distribution = bytes_.rarely(100) ? uint32_t(LANCER_DISTRIBUTION_MULTI_GGX) : bytes_.choice(4);
   p.option = bytes_.choice(2);
   using lancer::ParameterKind;
@@ -129,7 +129,7 @@ lancer_lobe Records::lobe() {
   lobe.kind = bytes_.choice(LANCER_MINNAERT);
   lobe.distribution = bytes_.choice(4);
   lobe.option = bytes_.choice(2);
-  lobe.rules = bytes_.choice(3);
+  lobe.rules = bytes_.choice(LANCER_RULES_BLENDER_52 + 1);
   lobe.weight = parameter(1.0f);
   lobe.color = parameter(0.8f);
   lobe.roughness = parameter(0.3f);

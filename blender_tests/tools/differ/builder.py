@@ -159,7 +159,9 @@ class Builder:
             parts.aim(thing, fields["location"], fields["target"])
         else:
             thing.location, thing.rotation_euler = fields.get("location", (0, 0, 0)), fields.get("rotation", (0, 0, 0))
-        thing.scale = fields.get("scale", (1, 1, 1))
+        # Embree in Debian's Blender 3 aborts in instances that are flat.
+        thinnest = 0.1 if bpy.app.version < (4, 0) else 0.0
+        thing.scale = [side or thinnest for side in fields.get("scale", (1, 1, 1))]
         for setting, value in fields.get("settings", {}).items():
             setattr(thing, setting, value)
         if "material" in fields and len(thing.material_slots):

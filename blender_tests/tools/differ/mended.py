@@ -170,12 +170,12 @@ SCENES = {
     "normal of a map that is not there, above a bump": [
         _frame(kind="DATA", passes=["Normal"]),
         *_thing(
-            "ball",
+            "torus",
             _node("NewGeometry"),
-            _node("TexNoise", {"Vector": ["@M/1", "Position"]}),
+            _node("VectorMath", {"Vector": ["@M/1", "Position"], "Vector_001": [0.5, 0.7, 0.3]}, operation="DOT_PRODUCT"),
             _node("NormalMap", {"Color": [0.8, 0.7, 0.9]}, uv_map="Missing"),
             _node("BsdfDiffuse", {"Normal": ["@M/3", "Normal"]}),
-            _node("OutputMaterial", {"Surface": ["@M/4", "BSDF"], "Displacement": ["@M/2", "Fac"]}),
+            _node("OutputMaterial", {"Surface": ["@M/4", "BSDF"], "Displacement": ["@M/2", "Value"]}),
             mesh={"smooth": "yes"},
         ),
     ],

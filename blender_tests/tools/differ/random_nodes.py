@@ -88,6 +88,8 @@ class Trees:
         self.budget -= 1
         props = {key: dice.pick(choices) for key, choices in kind.props.items()}
         outputs = [key for key, type_ in kind.outputs.items() if type_ == wanted and dice.chance(0.7)] or list(kind.outputs)
+        if tree in WORLDS:
+            outputs = [key for key in outputs if key != "Tangent"] or ["Position"]
         output = dice.pick(outputs)
         if "data_type" in props and name == "ShaderNodeMix":
             output = {"RGBA": "Result_Color", "FLOAT": "Result_Float", "VECTOR": "Result_Vector"}[props["data_type"]]
