@@ -65,7 +65,8 @@ class Walker:
             if onward is None:
                 break
             socket = onward
-            types.append(socket.type)
+            # Cycles replaces a muted node by a conversion between equal types: those of its output.
+            types.append(output.type if node.mute else socket.type)
             if not node.mute and node.type != "REROUTE":
                 constant, depth = socket, len(types)
             elif _LOOSE_ENDS_ARE_ZERO:

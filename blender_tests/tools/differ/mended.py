@@ -217,6 +217,17 @@ SCENES = {
             _shown(["@M/3", "Shader"]),
         ),
     ],
+    "muted node between a colour, a number and a colour": [
+        _frame(),
+        Record("world", "World", {}),
+        Record("node", "World/1", {"tree": "World", "kind": "ShaderNodeRGB", "output": [0.6, 0.2, 0.9]}),
+        Record(
+            "node",
+            "World/2",
+            {"tree": "World", "kind": "ShaderNodeCombineRGB", "inputs": {"B": ["@World/1", "Color"]}, "mute": True},
+        ),
+        Record("node", "World/3", {"tree": "World", **_node("OutputWorld", {"Surface": ["@World/2", "Image"]})}),
+    ],
     "metal that absorbs little": [
         _frame(),
         *_SKY,
