@@ -226,7 +226,8 @@ SCENES = {
             "World/2",
             {"tree": "World", "kind": "ShaderNodeCombineRGB", "inputs": {"B": ["@World/1", "Color"]}, "mute": True},
         ),
-        Record("node", "World/3", {"tree": "World", **_node("OutputWorld", {"Surface": ["@World/2", "Image"]})}),
+        Record("node", "World/3", {"tree": "World", **_node("Background", {"Color": ["@World/2", "Image"]})}),
+        Record("node", "World/4", {"tree": "World", **_node("OutputWorld", {"Surface": ["@World/3", "Background"]})}),
     ],
     "metal that absorbs little": [
         _frame(),
