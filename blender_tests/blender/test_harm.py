@@ -62,3 +62,13 @@ def test_a_colour_that_is_none_is_replaced_channel_by_channel():
     assert messages.color((0.5, 0.0, 2.0), "it", "colour", 1.0) == (0.5, 0.0, 2.0) and not len(messages)
     assert messages.color((math.inf, -1.0, math.nan), "it", "colour", 1.0) == (1.0, 0.0, 1.0)
     assert len(messages) == 1
+
+
+def test_a_number_out_of_its_range_is_told():
+    """Half a step of single precision beyond a limit is rounding; more is told."""
+    messages = Messages()
+    limit = float(np.float32(math.pi))
+    assert messages.number(limit, "it", "angle", 0.0, 0.0, math.pi) == math.pi and not len(messages)
+    assert messages.number(4.0, "it", "angle", 0.0, 0.0, 3.0) == 3.0
+    assert messages.number(math.nan, "it", "angle", 1.0, 0.0, 3.0) == 1.0
+    assert messages.lines() == ["it: angle is 4, 3 is used", "it: angle is nan, 1 is used"]
