@@ -178,7 +178,11 @@ class Objects:
         for uv_map in missing_tangents(self.materials.attributes(slots), mesh):
             told = f"it has no UV map '{uv_map}' for tangents: anisotropic surfaces are even, Cycles shows them black"
             self.messages.add(f"object '{name}': {told}", "feature:tangents without a UV map", severity=Severity.HINT)
-        keeps = any(self.materials.list[slot].flags & int(MaterialFlag.KEEP_NORMALS) for slot in slots)
+        materials = [self.materials.list[slot] for slot in slots]
+        if any(not is_constant(material.displacement, 0.0) for material in materials) and _differ_after_displacement(mesh):
+            told = "normals that displacement leaves at creases, custom normals or beside flat faces are not Cycles'"
+            self.messages.add(f"object '{name}': {told}", "feature:creases under displacement", severity=Severity.HINT)
+        keeps = any(material.flags & int(MaterialFlag.KEEP_NORMALS) for material in materials)
         if keeps and mesh.normals is None and (5, 0) <= bpy.app.version < (5, 2):
             told = "flat faces with displacement and bump stay flat, this Blender's Cycles smooths them"
             self.messages.add(f"object '{name}': {told}", "feature:smooth bump of flat faces", severity=Severity.HINT)
@@ -197,6 +201,15 @@ class Objects:
         for number in sorted({min(slot, len(materials) - 1) for slot in used}):
             if materials[number] is None:
                 self.messages.add(f"object '{name}': material slot {number + 1} is empty, grey is used", severity=Severity.HINT)
+
+
+def _differ_after_displacement(mesh):
+    """Whether Cycles has a rule of its own for normals after displacement: since 5.2 at corners, before beside flat faces."""
+    corners = mesh.normals
+    if corners is None or np.ndim(corners) != 3:
+        return False
+    flat = (corners == corners[:, :1]).all(axis=(1, 2))
+    return bpy.app.version >= (5, 2) or (flat.any() and not flat.all())
 
 
 def _has_special_collections(view_layer):
