@@ -2,12 +2,14 @@
 
 import re
 from collections import Counter
+from types import SimpleNamespace
 
 import pytest
 
 from tools.harness.places import ROOT
-from tools.mutants import page
+from tools.mutants import page, tests
 from tools.mutants.faults import Fault, read_faults
+from tools.mutants.tree import Broken
 
 FAULTS = read_faults()
 FOLDERS = {"core": ROOT / "core" / "src", "addon": ROOT / "addon"}
@@ -66,6 +68,26 @@ def test_a_fault_is_one_whole_line_and_keeps_its_place():
 def test_a_line_that_is_not_there_once_is_an_error(text):
     with pytest.raises(ValueError, match="room/fault"):
         FAULT.applied(text)
+
+
+@pytest.mark.parametrize("line, failure", [
+    ("exit 0", None),
+    ("echo '[  FAILED  ] A.B (0 ms)'; exit 1", "A.B"),
+    ("kill -SEGV $$", "ended by signal 11"),
+    ("exit 1", Broken),
+    ("echo '[  PASSED  ] 0 tests.'", Broken),
+])  # fmt: skip
+def test_a_test_that_fails_or_crashes_kills(tmp_path, line, failure):
+    """A program that does not run its tests proves nothing."""
+    program = tmp_path / "program"
+    program.write_text(f"#!/bin/sh\n{line}\n")
+    program.chmod(0o755)
+    tree = SimpleNamespace(root=tmp_path, program=program)
+    if failure is Broken:
+        with pytest.raises(Broken):
+            tests.failed(tree, FAULT)
+    else:
+        assert tests.failed(tree, FAULT) == failure
 
 
 def test_the_sentence_counts_verdicts():

@@ -20,7 +20,7 @@ def targets(faults):
 
 
 def failed(tree, fault, number=0):
-    """The first failure of a fault's tests as a line, or None where all pass. Raises Broken where they do not end.
+    """The first failure of a fault's tests as a line, a crash too, or None where all pass. Raises Broken where they do not end.
 
     number: of the fault of the core that is switched on.
     """
@@ -46,6 +46,8 @@ def _failure(tree, command, environment, pattern):
     said = done.stdout + done.stderr
     if done.returncode == 0 and "[  PASSED  ] 0 tests" not in said:
         return None
+    if done.returncode < 0:
+        return f"ended by signal {-done.returncode}"
     found = pattern.search(said)
     if done.returncode == 1 and found:
         return found.group(1)[:300]
