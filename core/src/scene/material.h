@@ -84,6 +84,12 @@ template <class F, class Values> struct ParameterReader {
     const V c = values(parameter);
     return {within(c.x, 0.0f, high), within(c.y, 0.0f, high), within(c.z, 0.0f, high)};
   }
+  // NaN becomes 0.
+  LANCER_LANE V vector(const Parameter &parameter) const {
+    const V v = values(parameter);
+    const auto finite = [](F x) { return select(x == x, within(x, -kBrightest, kBrightest), F(0.0f)); };
+    return {finite(v.x), finite(v.y), finite(v.z)};
+  }
   LANCER_LANE F scalar(const Parameter &parameter, float low, float high) const {
     return within(values(parameter).x, low, high);
   }
@@ -113,7 +119,7 @@ template <class F, class Values> struct ParameterReader {
     else if constexpr (kind == ParameterKind::Turns)
       return turns(parameter);
     else if constexpr (kind == ParameterKind::Vector)
-      return values(parameter);
+      return vector(parameter);
     else
       return direction(parameter);
   }
