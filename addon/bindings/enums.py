@@ -5,7 +5,7 @@ Generated from core/include/lancer.h by `make bindings`; changes here are lost.
 
 from enum import IntEnum, IntFlag
 
-ABI_VERSION = 6
+ABI_VERSION = 7
 
 
 class Status(IntEnum):

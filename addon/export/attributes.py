@@ -47,19 +47,18 @@ def has_tangents(mesh):
     return any(attribute.name.startswith(_TANGENT) for attribute in mesh.attributes)
 
 
-def missing_tangents(wanted, mesh):
-    """Return the names of the UV maps whose tangents are wanted and that an exported mesh lacks."""
-    have = {attribute.name for attribute in mesh.attributes}
-    return sorted(_name_in_blender(name[len(_TANGENT) :]) for name in wanted if name.startswith(_TANGENT) and name not in have)
+def lacks_tangents(mesh, name):
+    """Whether an exported mesh has no tangents of the UV map that a node of the core names."""
+    return not any(attribute.name == _TANGENT + name for attribute in mesh.attributes)
 
 
 def named_attributes(wanted):
     """Return the names in Blender of the wanted attributes of a mesh, without those that Lancer computes."""
     own = (_TANGENT, POLYGONS, RENDER_COLOR)
-    return sorted(_name_in_blender(name) for name in wanted if name != "generated" and not name.startswith(own))
+    return sorted(name_in_blender(name) for name in wanted if name != "generated" and not name.startswith(own))
 
 
-def _name_in_blender(name):
+def name_in_blender(name):
     return name[len(_NAMED) :] if name.startswith(_NAMED) else name
 
 
@@ -110,7 +109,7 @@ def _tangents(mesh, data, name, corners, poll):
 
 
 def _tangents_layer(mesh, name):
-    uv_map = _name_in_blender(name[len(_TANGENT) :])
+    uv_map = name_in_blender(name[len(_TANGENT) :])
     return mesh.uv_layers.get(uv_map) if uv_map else render_uv_map(mesh)
 
 
@@ -173,10 +172,10 @@ def _found(mesh, name):
     """Return (values, domain) of a named attribute; None if the mesh lacks it or Cycles does not read its type."""
     if name == RENDER_COLOR:
         return _values(mesh, color_attribute(mesh))
-    layer = mesh.uv_layers.get(_name_in_blender(name))
+    layer = mesh.uv_layers.get(name_in_blender(name))
     if layer is not None:
         return read_uv_map(layer), Domain.CORNER
-    return _values(mesh, mesh.attributes.get(_name_in_blender(name)))
+    return _values(mesh, mesh.attributes.get(name_in_blender(name)))
 
 
 def color_attribute(mesh):

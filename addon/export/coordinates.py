@@ -14,8 +14,8 @@ from .object_attributes import PREFIXES
 from .properties import view_layer_value
 
 _RADIAL = {"X": 0, "Y": 1, "Z": 2}
-_ALONG_U = 3
-# Flags of TANGENT: 0, or across the ray.
+ALONG_U = 3
+# Flag of TANGENT for the world: its tangent is 0; since 5.2, a direction across the ray.
 _TANGENT_OF_WORLD = 1 if bpy.app.version < (5, 2) else 2
 # Names of attributes that Cycles computes itself.
 _UNREAD = {"N", "generated_transform", "pointiness", "random_per_island", "tangent", "tangent_sign"}
@@ -196,7 +196,7 @@ def _tangent(graph, site, output):
         graph.attributes.add("generated")
         return graph.emit(NodeKind.TANGENT, graph.normal, option=_RADIAL[node.axis])
     want_tangents(graph, node.uv_map)
-    return graph.emit(NodeKind.TANGENT, graph.normal, option=_ALONG_U, name=attribute_name(node.uv_map))
+    return graph.emit(NodeKind.TANGENT, graph.normal, option=ALONG_U, name=attribute_name(node.uv_map))
 
 
 def want_tangents(graph, uv_map):

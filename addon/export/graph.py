@@ -13,160 +13,39 @@ import math
 
 import bpy
 
-from ..bindings import snapshot
-from ..bindings.enums import AlphaMode, MathOperation, MixMode, NodeKind, VectorOperation
+from ..bindings.enums import VectorOperation
 from ..bindings.shading import NodeRef
 from ..messages.severity import Severity
 from . import colors, coordinates, curves, maths, normals, procedural, textures
-from .arithmetic import THIRDS, is_constant, single, triple
-from .colorspace import luminance_weights
-from .fold import FOLDED, fold, gives_number
+from .arithmetic import THIRDS, triple
+from .node_builder import UNKNOWN, NodeBuilder, in_three
 from .sockets import find
 from .walk import Site, Walker
 
 _MODULES = (maths, colors, curves, coordinates, normals, textures, procedural)
 _READERS = {kind: reader for module in _MODULES for kind, reader in module.READERS.items()}
-_OF_THREE = {NodeKind.MIX, NodeKind.VECTOR_MATH, NodeKind.INVERT}
 _SCALARS = {"VALUE", "INT", "BOOLEAN"}
 _VECTORS = {"VECTOR", "ROTATION"}
-_UNKNOWN = {"mid-grey": (0.5, 0.5, 0.5), "white": (1.0, 1.0, 1.0)}
 _DEEPEST = 150  # depth of recursion in nodes; each node takes several of Python's 1000 nested calls
 _STRIDE = 100  # depth in nodes at which _look_ahead computes and caches a value
-_MOST_NODES = 4096  # the core's limit
 _CONVERTS_ENDS_ONLY = bpy.app.version >= (5, 0)
 
 
-class _Scope:
-    """Nodes and values computed so far that the following nodes may refer to."""
-
-    def __init__(self):
-        self.numbers = {}
-        self.values = {}
-
-
-class NodeGraph:
+class NodeGraph(NodeBuilder):
     def __init__(self, owner, messages, images=None, depsgraph=None, unknown="mid-grey"):
         """unknown: the colour of nodes that are not supported, mid-grey for surfaces and white for emitters."""
-        self.owner = owner
-        self.messages = messages
-        self.images = images
+        super().__init__(owner, messages, images, unknown)
         self.depsgraph = depsgraph
-        self.unknown = unknown
         self.attributes = set()  # names of mesh attributes that the nodes read
         self.objects = set()  # identities of the objects whose transform the nodes read
-        self.is_of_world = False
+        self.is_of_world = False  # whether the nodes are seen in a direction, and not at a place of a mesh
         self.lamp_value = None  # for a lamp: a function that returns four numbers by the name of an ObjectAttribute
         self.reads_layer = False  # whether the nodes read properties of the view layer, the scene or its world
         self.material_index = 0  # of the owner; 0 if the owner is no material
         self.normal = (0.0, 0.0, 0.0)  # the bumped normal of the whole material; (0, 0, 0) is the shading normal
         self.walker = Walker()
-        self._nodes = []
-        self._tables = {}
-        self._scopes = [_Scope()]
         self._active = set()
         self._is_ahead = False
-
-    @property
-    def nodes(self):
-        return tuple(self._nodes)
-
-    # ---- building ----
-
-    def emit(self, kind, *inputs, option=0, flags=0, name="", image=0, image_count=0, first=0, matrix=None):
-        """Add a node of the core and return its NodeRef, or its value if all inputs are constant and its kind folds."""
-        # Spread a constant number over all three channels, as the results of nodes are.
-        inputs = tuple(map(single, map(_three, inputs) if kind in _OF_THREE else inputs))
-        fields = {} if matrix is None else {"matrix": tuple(float(x) for x in matrix)}
-        node = snapshot.Node(
-            kind=kind, option=option, flags=flags, name=name, image=image, image_count=image_count, first=first,
-            inputs=inputs, **fields,
-        )  # fmt: skip
-        if kind in FOLDED and not any(isinstance(value, NodeRef) for value in node.inputs):
-            return self._fold(node)
-        numbers = self._scopes[-1].numbers
-        key = (kind, option, flags, name, image, image_count, first, node.inputs, node.matrix)
-        if key not in numbers:
-            if len(self._nodes) >= _MOST_NODES:
-                text = f"has more than {_MOST_NODES} nodes, {self.unknown} is used for the rest"
-                self.messages.add(f"{self.owner}: {text}", "feature:many nodes", severity=Severity.WRONG)
-                return _UNKNOWN[self.unknown]
-            numbers[key] = len(self._nodes)
-            self._nodes.append(node)
-        return NodeRef(numbers[key])
-
-    def _fold(self, node):
-        value = fold(node)
-        if all(map(math.isfinite, triple(value))):
-            return value
-        self.messages.add(f"{self.owner}: a node's result is not finite, 0 is used")
-        return 0.0 if gives_number(node) else (0.0, 0.0, 0.0)
-
-    def table(self, values):
-        """Return the number of an image with the table, (n, channels) of float32, as its only row. Equal tables share one."""
-        key = values.shape, values.tobytes()
-        if key not in self._tables:
-            picture = snapshot.Image(name="table", texels=values[None], alpha=AlphaMode.CHANNEL_PACKED)
-            self._tables[key] = self.images.repeat([picture])
-        return self._tables[key]
-
-    def height_nodes(self, build):
-        """Return (first, value) of build(), whose nodes from number first on are not shared: BUMP evaluates them elsewhere."""
-        first = len(self._nodes)
-        self._scopes.append(_Scope())
-        value = build()
-        self._scopes.pop()
-        return first, value
-
-    def op(self, operation, *values, clamped=False):
-        values = (*values, *(0.0,) * (3 - len(values)))
-        return self.emit(NodeKind.MATH, *values, option=operation, flags=int(clamped))
-
-    def clamped(self, value):
-        """Return a number clamped to 0 to 1; constants are clamped where they are read."""
-        return self.op(MathOperation.ADD, value, 0.0, clamped=True) if isinstance(value, NodeRef) else value
-
-    def vector_op(self, operation, *values, scale=1.0):
-        values = (*values, *((0.0, 0.0, 0.0),) * (3 - len(values)))
-        return self.emit(NodeKind.VECTOR_MATH, *values, scale, option=operation)
-
-    def multiply(self, a, b):
-        if is_constant(a, 0.0) or is_constant(b, 0.0):
-            return _like(0.0, a, b)
-        if is_constant(a, 1.0) or is_constant(b, 1.0):
-            return _like(b if is_constant(a, 1.0) else a, a, b)
-        if isinstance(a, float) and isinstance(b, float):
-            return single(a * b)
-        return self.vector_op(VectorOperation.MULTIPLY, _three(a), _three(b))
-
-    def add(self, a, b):
-        if is_constant(a, 0.0) or is_constant(b, 0.0):
-            return _like(b if is_constant(a, 0.0) else a, a, b)
-        if isinstance(a, float) and isinstance(b, float):
-            return single(a + b)
-        return self.vector_op(VectorOperation.ADD, _three(a), _three(b))
-
-    def subtract(self, a, b):
-        """Of scalars."""
-        if isinstance(a, float) and a == b:
-            return 0.0
-        return a if is_constant(b, 0.0) else self.op(MathOperation.SUBTRACT, a, b)
-
-    def mix(self, factor, a, b):
-        """Return the mix of two colours; the factor is clamped to 0 to 1."""
-        if is_constant(factor, 0.0) or is_constant(factor, 1.0):
-            return b if is_constant(factor, 1.0) else a
-        return self.emit(NodeKind.MIX, factor, _three(a), _three(b), option=MixMode.MIX, flags=1)
-
-    def component(self, value, axis):
-        return self.emit(NodeKind.SEPARATE, value, option=axis)
-
-    def combine(self, x, y, z):
-        return self.emit(NodeKind.COMBINE, x, y, z)
-
-    def grey(self, color):
-        return self.emit(NodeKind.GREY, color, matrix=(*luminance_weights(), *(0.0,) * 9))
-
-    # ---- reading ----
 
     def tell(self, site, text, key=None, severity=Severity.DIFFERENT):
         """Add a message that names the node. key: of Messages.add; None counts the node's type as missing, "" nothing."""
@@ -251,8 +130,8 @@ class NodeGraph:
             self.tell(
                 origin.site, f"{origin.site.node.bl_label} is not supported, {self.unknown} is used", severity=Severity.WRONG
             )
-            return _UNKNOWN[self.unknown]
-        return _three(value)
+            return UNKNOWN[self.unknown]
+        return in_three(value)
 
     def _output(self, site, output):
         """Return the value of an output; None if its node is not supported or nests too deeply."""
@@ -296,7 +175,7 @@ class NodeGraph:
         if socket.type == "RGBA":
             told = f"input '{socket.name}' is linked to {source}, which is not supported, {self.unknown} is used"
             self.tell(site, told, _key(origin), Severity.WRONG)
-            return _UNKNOWN[self.unknown]
+            return UNKNOWN[self.unknown]
         value = _constant(socket)
         told = f"{value:g}" if isinstance(value, float) else ", ".join(f"{x:g}" for x in value)
         self.tell(
@@ -309,7 +188,7 @@ class NodeGraph:
     def _convert(self, value, source, target):
         if target in _SCALARS and source not in _SCALARS:
             return self.grey(value) if source == "RGBA" else self.vector_op(VectorOperation.DOT_PRODUCT, value, THIRDS)
-        return _three(value) if target not in _SCALARS else value
+        return in_three(value) if target not in _SCALARS else value
 
 
 def _site(node):
@@ -318,15 +197,6 @@ def _site(node):
 
 def _key(origin):
     return f"node:{origin.site.node.bl_label}"
-
-
-def _three(value):
-    return value if isinstance(value, NodeRef) else triple(value)
-
-
-def _like(value, a, b):
-    """Return value as a number if both operands are numbers, else with three channels."""
-    return value if isinstance(a, float) and isinstance(b, float) else _three(value)
 
 
 def _constant(socket):

@@ -5,12 +5,12 @@ from typing import NamedTuple
 import bpy
 import numpy as np
 
-from ..bindings.enums import InstanceFlag, InstanceKind, MaterialFlag, Ray, Shading
+from ..bindings.enums import InstanceFlag, InstanceKind, Ray, Shading
 from ..messages.severity import Severity
-from .arithmetic import is_constant
-from .attributes import POLYGONS, missing_tangents, named_attributes
+from .attributes import POLYGONS
 from .checks import check_object
 from .mesh import export_mesh, read_positions, shown_mesh
+from .mesh_differences import differences, lost_by_exact_shape
 from .visibility import object_hidden_from
 
 _TERMINATOR = "shadow_terminator_geometry_offset"
@@ -49,6 +49,7 @@ class Objects:
         self.placements = []
         self._numbers = {}
         self._meshes = {}
+        self._differences = {}  # messages by slots and mesh
         self._placed = {}
         self._wanted = {}
         self._checked = set()
@@ -102,7 +103,7 @@ class Objects:
             mesh, used = self._mesh(thing, owner, name, data_key, slots, self._colors_polygons(own), poll)
             if mesh < 0:
                 return -1, ""
-            self._tell_mesh(name, slots, self.meshes[mesh])
+            self._tell_mesh(name, slots, mesh)
         else:
             placement, used = self._placement(thing, owner, name, kind, data_key), (0,)
             if placement < 0:
@@ -174,24 +175,17 @@ class Objects:
         return number
 
     def _tell_mesh(self, name, slots, mesh):
-        """Add messages about what materials need and the mesh lacks, where Cycles shows something else."""
-        for uv_map in missing_tangents(self.materials.attributes(slots), mesh):
-            told = f"it has no UV map '{uv_map}' for tangents: anisotropic surfaces are even, Cycles shows them black"
-            self.messages.add(f"object '{name}': {told}", "feature:tangents without a UV map", severity=Severity.HINT)
-        materials = [self.materials.list[slot] for slot in slots]
-        if any(not is_constant(material.displacement, 0.0) for material in materials) and _differ_after_displacement(mesh):
-            told = "normals that displacement leaves at creases, custom normals or beside flat faces are not Cycles'"
-            self.messages.add(f"object '{name}': {told}", "feature:creases under displacement", severity=Severity.HINT)
-        keeps = any(material.flags & int(MaterialFlag.KEEP_NORMALS) for material in materials)
-        if keeps and mesh.normals is None and (5, 0) <= bpy.app.version < (5, 2):
-            told = "flat faces with displacement and bump stay flat, this Blender's Cycles smooths them"
-            self.messages.add(f"object '{name}': {told}", "feature:smooth bump of flat faces", severity=Severity.HINT)
+        """Add messages about the mesh with a number under these materials; objects that share both share the checks."""
+        found = self._differences.get((slots, mesh))
+        if found is None:
+            materials = [self.materials.list[slot] for slot in slots]
+            found = self._differences[slots, mesh] = differences(self.meshes[mesh], materials)
+        for text, key in found:
+            self.messages.add(f"object '{name}': {text}", key, severity=Severity.HINT)
 
     def _tell_exact(self, name, slots):
         """Add a message about attributes and displacement that materials read and that an exact shape lacks."""
-        lost = [f"attribute '{attribute}'" for attribute in named_attributes(self.materials.attributes(slots))]
-        if any(not is_constant(self.materials.list[slot].displacement, 0.0) for slot in slots):
-            lost.insert(0, "displacement")
+        lost = lost_by_exact_shape(self.materials.attributes(slots), [self.materials.list[slot] for slot in slots])
         if lost:
             self.messages.add(f"object '{name}': its exact shape lacks what its mesh would have: {', '.join(lost)}")
 
@@ -201,15 +195,6 @@ class Objects:
         for number in sorted({min(slot, len(materials) - 1) for slot in used}):
             if materials[number] is None:
                 self.messages.add(f"object '{name}': material slot {number + 1} is empty, grey is used", severity=Severity.HINT)
-
-
-def _differ_after_displacement(mesh):
-    """Whether Cycles has a rule of its own for normals after displacement: since 5.2 at corners, before beside flat faces."""
-    corners = mesh.normals
-    if corners is None or np.ndim(corners) != 3:
-        return False
-    flat = (corners == corners[:, :1]).all(axis=(1, 2))
-    return bpy.app.version >= (5, 2) or (flat.any() and not flat.all())
 
 
 def _has_special_collections(view_layer):

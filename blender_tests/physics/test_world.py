@@ -134,6 +134,21 @@ def test_chi_square(library):
     assert chi_square(counts, expected * count / expected.sum()) > LEVEL
 
 
+def test_tangents_lie_across_the_ray(library):
+    """Flag 2 of TANGENT: (1, 1, 1) x n, or (-1, 1, 1) x n along the diagonal, of the normal n against the ray; flag 1: 0."""
+    directions = np.array([[0.0, 0.6, 0.8], [1.0, 0.0, 0.0], [3**-0.5] * 3])
+    for flag in (1, 2):
+        node = Node(kind=NodeKind.TANGENT, option=2, flags=flag)
+        with Scene.upload(scene(World(radiance=NodeRef(0), nodes=(node,)), [])) as uploaded:
+            shown, _ = uploaded.world(directions)
+        n = -directions
+        across = np.cross([[1, 1, 1], [1, 1, 1], [-1, 1, 1]], n)
+        expected = across / np.linalg.norm(across, axis=1, keepdims=True) if flag == 2 else np.zeros((3, 3))
+        # Some roundings to float of numbers below 1.
+        assert np.allclose(shown, expected, atol=4 * 2.0**-24)
+
+
+
 def test_cube_sides(library):
     """Six colours, +x -x +y -y +z -z, each seen along its axis."""
     colors = np.array([(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 0), (0, 1, 1), (1, 0, 1)], np.float32)

@@ -32,7 +32,7 @@ extern "C" {
 #endif
 
 /* Incremented with each change of a struct or a call of this header. */
-#define LANCER_ABI_VERSION 6u
+#define LANCER_ABI_VERSION 7u
 
 typedef uint64_t lancer_scene;
 typedef uint64_t lancer_session;

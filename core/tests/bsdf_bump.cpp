@@ -212,5 +212,24 @@ TEST(BsdfBump, TangentsTurnCounterClockwise) {
   EXPECT_NEAR(glm::distance(quarter, glm::vec3(0.0f, 1.0f, 0.0f)), 0.0f, 2.0 * kUlp);
 }
 
+// Light above ns, at a lobe whose normal leans away from ns and sees it: wide lobes reject it by all rules, narrow lobes and
+// velvet since 5.0.
+TEST(BsdfBump, NormalsThatLeanAwayRejectLightByTheRulesOfAVersion) {
+  const auto factor = [](LobeShape shape, Matte variant, Rules rules) {
+    Lobe<float> lobe;
+    lobe.shape = shape;
+    lobe.variant = static_cast<uint8_t>(variant);
+    lobe.rules = rules;
+    const glm::vec3 n = glm::normalize(glm::vec3(1.0f, 0.0f, -0.25f)), ns(0, 0, 1), wi = glm::normalize(glm::vec3(1, 0, 1));
+    return bump_acts(lobe, false) ? bump_factor(lobe, n, ns, wi.z, glm::dot(n, wi), false) : 1.0f;
+  };
+  for (const Rules rules : {Rules::Blender3, Rules::Blender4, Rules::Blender45, Rules::Blender50, Rules::Blender52}) {
+    const float narrow = rules < Rules::Blender50 ? 1.0f : 0.0f;
+    EXPECT_EQ(factor(LobeShape::Lambert, Matte::OrenNayar, rules), 0.0f);
+    EXPECT_EQ(factor(LobeShape::Microfacet, Matte::OrenNayar, rules), narrow);
+    EXPECT_EQ(factor(LobeShape::Matte, Matte::Velvet, rules), narrow);
+  }
+}
+
 } // namespace
 } // namespace lancer

@@ -224,6 +224,19 @@ TEST(Microfacet, ComponentsTellReflectionFromTransmission) {
   }
 }
 
+// A black edge colour makes a smooth metal black at cos 1 / 7; since 5.2 the facets' mean is its albedo there, too.
+TEST(Microfacet, BlackEdgesOfMetalsReflectInTheMean) {
+  const auto albedo = [](Rules rules) {
+    LobeInputs<float> metal = rough(LobeKind::Conductor, Facets::Ggx, 0.3f);
+    metal.color = glm::vec3(0.05f);
+    metal.edge = glm::vec3(0.0f);
+    metal.rules = rules;
+    return seen({metal}, direction(1.0 / 7.0)).albedo().x;
+  };
+  EXPECT_EQ(albedo(Rules::Blender50), 0.0f);
+  EXPECT_GT(albedo(Rules::Blender52), 0.05f);
+}
+
 // Since 5.2 the colour passes of glass show means over the facets, of either side of the same boundary.
 TEST(Microfacet, TransmittedColourIsThatOfBothSides) {
   const auto shown = [](float ior, float cosine) {

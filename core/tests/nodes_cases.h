@@ -220,7 +220,7 @@ inline std::vector<NodeCase> all_cases(Random &random) {
   for (uint32_t option = 0; option < LANCER_COORDINATE_COUNT; ++option)
     options(LANCER_NODE_COORDINATE, LANCER_COORDINATE_COUNT, 2);
   for (int i = 0; i < 6; ++i)
-    options(LANCER_NODE_ATTRIBUTE, 1, 4);
+    options(LANCER_NODE_ATTRIBUTE, 1, 8);
   for (uint32_t extension = 0; extension < 4; ++extension)
     for (uint32_t interpolation = 0; interpolation < 3; ++interpolation)
       for (const uint32_t straight : {0u, 256u})
@@ -248,7 +248,7 @@ inline std::vector<NodeCase> all_cases(Random &random) {
   for (int i = 0; i < 8; ++i)
     options(LANCER_NODE_BUMP, 1, 8);
   for (int i = 0; i < 4; ++i)
-    options(LANCER_NODE_TANGENT, 4);
+    options(LANCER_NODE_TANGENT, 4, 3);
   options(LANCER_NODE_CLAMP, 1);
   options(LANCER_NODE_DISPLACEMENT, 2);
   options(LANCER_NODE_GAMMA, 1);

@@ -59,6 +59,19 @@ TEST(NodesNormal, MapWithoutUVsChangesNothing) {
   expect_near(map_at(stage, {0.9f, 0.2f, 0.7f}), {0, 0, 1}, 0.0f);
 }
 
+TEST(NodesNormal, MapsStartFromAGivenNormal) {
+  Stage stage(kHere);
+  const glm::vec3 bent = glm::normalize(glm::vec3(0.5f, 0.25f, 1.0f)), direction(0, 1, 0);
+  const auto map = [&](uint32_t option, float strength) {
+    return glm::vec3(
+        stage.value({named(node(LANCER_NODE_NORMAL_MAP, option,
+                                {constant(strength), constant(0.5f, 1.0f, 0.5f), constant(bent.x, bent.y, bent.z)}),
+                           "no such map")}));
+  };
+  expect_near(map(0, 1.0f), bent, 0.0f);
+  expect_near(map(2, 0.5f), glm::normalize(0.5f * bent + 0.5f * direction));
+}
+
 TEST(NodesNormal, MapsOfObjectAndWorld) {
   Stage stage(kStretched);
   const glm::vec3 direction = glm::normalize(glm::vec3(0.3f, -0.4f, 0.8f)), color = 0.5f + 0.5f * direction;
@@ -182,6 +195,29 @@ TEST(NodesNormal, TangentsRadialAndAlongTheMap) {
   // Around x: (0, 0, y - 0.5) is along the normal; nothing remains perpendicular to it.
   expect_near(tangent(0, 0.75, 0.25), glm::vec3(0.0f));
   expect_near(tangent(3, 0.2, 0.2), {1, 0, 0});
+}
+
+TEST(NodesNormal, TangentsLieAcrossAGivenNormal) {
+  Stage stage(kHere);
+  // Along u is x; across the normal (3, 0, 4) / 5, (4, 0, -3) / 5 remains of x.
+  expect_near(glm::vec3(stage.value({node(LANCER_NODE_TANGENT, 3, {constant(0.6f, 0.0f, 0.8f)})})), {0.8f, 0.0f, -0.6f});
+}
+
+TEST(NodesNormal, AStillAttributeGivesNoSlope) {
+  lancer_mesh mesh = Stage::triangle();
+  const float heights[] = {0.0f, 1.0f, 0.5f};
+  const lancer_attribute attribute = {"height", heights, LANCER_DOMAIN_VERTEX, 1};
+  mesh.attributes = &attribute;
+  mesh.attribute_count = 1;
+  Stage stage(mesh, kHere);
+  stage.footprint = 0.25f;
+  const auto bumped = [&](uint32_t flags) {
+    return glm::vec3(stage.value(
+        {flagged(named(node(LANCER_NODE_ATTRIBUTE), "height"), flags),
+         node(LANCER_NODE_BUMP, 0, {constant(1.0f), constant(1.0f), result_of(0), constant(0.0f), constant(1.0f)})}));
+  };
+  EXPECT_LT(bumped(0).z, 0.9f);
+  EXPECT_EQ(bumped(LANCER_ATTRIBUTE_STILL), glm::vec3(0, 0, 1));
 }
 
 TEST(NodesNormal, DisplacementInObjectAndWorld) {

@@ -10,7 +10,7 @@
 
 namespace lancer::testing {
 
-inline constexpr Rules kAllRules[] = {Rules::Blender3, Rules::Blender4, Rules::Blender45};
+inline constexpr Rules kAllRules[] = {Rules::Blender3, Rules::Blender4, Rules::Blender45, Rules::Blender50, Rules::Blender52};
 
 inline PrincipledInputs<float> plain(Rules rules) {
   PrincipledInputs<float> in;

@@ -1,0 +1,145 @@
+"""Nodes of the core, added one by one: equal nodes are shared, and constants are folded.
+
+The base of graph.NodeGraph, which reads Blender's nodes into them.
+"""
+
+import math
+
+from ..bindings import snapshot
+from ..bindings.enums import AlphaMode, MathOperation, MixMode, NodeKind, VectorOperation
+from ..bindings.shading import NodeRef
+from ..messages.severity import Severity
+from .arithmetic import is_constant, single, triple
+from .colorspace import luminance_weights
+from .fold import FOLDED, fold, gives_number
+
+UNKNOWN = {"mid-grey": (0.5, 0.5, 0.5), "white": (1.0, 1.0, 1.0)}
+_OF_THREE = {NodeKind.MIX, NodeKind.VECTOR_MATH, NodeKind.INVERT}
+_MOST_NODES = 4096  # the core's limit
+
+
+class _Scope:
+    """Nodes and values computed so far that the following nodes may refer to."""
+
+    def __init__(self):
+        self.numbers = {}
+        self.values = {}
+
+
+class NodeBuilder:
+    def __init__(self, owner, messages, images, unknown):
+        """unknown: a key of UNKNOWN, the colour of nodes that are not supported."""
+        self.owner = owner
+        self.messages = messages
+        self.images = images
+        self.unknown = unknown
+        self._nodes = []
+        self._tables = {}
+        self._scopes = [_Scope()]
+
+    @property
+    def nodes(self):
+        return tuple(self._nodes)
+
+    def emit(self, kind, *inputs, option=0, flags=0, name="", image=0, image_count=0, first=0, matrix=None):
+        """Add a node of the core and return its NodeRef, or its value if all inputs are constant and its kind folds."""
+        # Spread a constant number over all three channels, as the results of nodes are.
+        inputs = tuple(map(single, map(in_three, inputs) if kind in _OF_THREE else inputs))
+        fields = {} if matrix is None else {"matrix": tuple(float(x) for x in matrix)}
+        node = snapshot.Node(
+            kind=kind, option=option, flags=flags, name=name, image=image, image_count=image_count, first=first,
+            inputs=inputs, **fields,
+        )  # fmt: skip
+        if kind in FOLDED and not any(isinstance(value, NodeRef) for value in node.inputs):
+            return self._fold(node)
+        numbers = self._scopes[-1].numbers
+        key = (kind, option, flags, name, image, image_count, first, node.inputs, node.matrix)
+        if key not in numbers:
+            if len(self._nodes) >= _MOST_NODES:
+                text = f"has more than {_MOST_NODES} nodes, {self.unknown} is used for the rest"
+                self.messages.add(f"{self.owner}: {text}", "feature:many nodes", severity=Severity.WRONG)
+                return UNKNOWN[self.unknown]
+            numbers[key] = len(self._nodes)
+            self._nodes.append(node)
+        return NodeRef(numbers[key])
+
+    def _fold(self, node):
+        value = fold(node)
+        if all(map(math.isfinite, triple(value))):
+            return value
+        self.messages.add(f"{self.owner}: a node's result is not finite, 0 is used")
+        return 0.0 if gives_number(node) else (0.0, 0.0, 0.0)
+
+    def table(self, values):
+        """Return the number of an image with the table, (n, channels) of float32, as its only row. Equal tables share one."""
+        key = values.shape, values.tobytes()
+        if key not in self._tables:
+            picture = snapshot.Image(name="table", texels=values[None], alpha=AlphaMode.CHANNEL_PACKED)
+            self._tables[key] = self.images.repeat([picture])
+        return self._tables[key]
+
+    def height_nodes(self, build):
+        """Return (first, value) of build(), whose nodes from number first on are not shared: BUMP evaluates them elsewhere."""
+        first = len(self._nodes)
+        self._scopes.append(_Scope())
+        value = build()
+        self._scopes.pop()
+        return first, value
+
+    def op(self, operation, *values, clamped=False):
+        values = (*values, *(0.0,) * (3 - len(values)))
+        return self.emit(NodeKind.MATH, *values, option=operation, flags=int(clamped))
+
+    def clamped(self, value):
+        """Return a number clamped to 0 to 1; constants are clamped where they are read."""
+        return self.op(MathOperation.ADD, value, 0.0, clamped=True) if isinstance(value, NodeRef) else value
+
+    def vector_op(self, operation, *values, scale=1.0):
+        values = (*values, *((0.0, 0.0, 0.0),) * (3 - len(values)))
+        return self.emit(NodeKind.VECTOR_MATH, *values, scale, option=operation)
+
+    def multiply(self, a, b):
+        if is_constant(a, 0.0) or is_constant(b, 0.0):
+            return _like(0.0, a, b)
+        if is_constant(a, 1.0) or is_constant(b, 1.0):
+            return _like(b if is_constant(a, 1.0) else a, a, b)
+        if isinstance(a, float) and isinstance(b, float):
+            return single(a * b)
+        return self.vector_op(VectorOperation.MULTIPLY, in_three(a), in_three(b))
+
+    def add(self, a, b):
+        if is_constant(a, 0.0) or is_constant(b, 0.0):
+            return _like(b if is_constant(a, 0.0) else a, a, b)
+        if isinstance(a, float) and isinstance(b, float):
+            return single(a + b)
+        return self.vector_op(VectorOperation.ADD, in_three(a), in_three(b))
+
+    def subtract(self, a, b):
+        """Of scalars."""
+        if isinstance(a, float) and a == b:
+            return 0.0
+        return a if is_constant(b, 0.0) else self.op(MathOperation.SUBTRACT, a, b)
+
+    def mix(self, factor, a, b):
+        """Return the mix of two colours; the factor is clamped to 0 to 1."""
+        if is_constant(factor, 0.0) or is_constant(factor, 1.0):
+            return b if is_constant(factor, 1.0) else a
+        return self.emit(NodeKind.MIX, factor, in_three(a), in_three(b), option=MixMode.MIX, flags=1)
+
+    def component(self, value, axis):
+        return self.emit(NodeKind.SEPARATE, value, option=axis)
+
+    def combine(self, x, y, z):
+        return self.emit(NodeKind.COMBINE, x, y, z)
+
+    def grey(self, color):
+        return self.emit(NodeKind.GREY, color, matrix=(*luminance_weights(), *(0.0,) * 9))
+
+
+def in_three(value):
+    return value if isinstance(value, NodeRef) else triple(value)
+
+
+def _like(value, a, b):
+    """Return value as a number if both operands are numbers, else with three channels."""
+    return value if isinstance(a, float) and isinstance(b, float) else in_three(value)
