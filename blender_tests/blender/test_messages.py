@@ -121,6 +121,25 @@ def test_light_that_depends_on_sampling_is_named(case):
     assert sky.startswith("world 'World': its nodes read Light Path")
 
 
+def test_meshes_and_skies_with_rules_of_cycles_own_are_named(case):
+    got = case("meshes_apart")
+    version, before = got["version"], got["before"]
+    (sky,) = set(got["after"]) - set(before)
+    assert (
+        sky.startswith("world 'World': ray visibility hides it from some lobes")
+        and "Diffuse, Glossy and Transmission equal" in sky
+    )
+    # Both planes lack the map.
+    tangents = [line for line in before if "has no UV map 'Gone'" in line]
+    assert [line.split(":")[0] for line in tangents] == ["object 'Plane'", "object 'Plane.001'"]
+    assert all("add the map" in line for line in tangents)
+    creases = [line for line in before if "displacement renews its normals" in line]
+    assert [line.split(":")[0] for line in creases] == ["object 'Half'"]
+    flat = [line.split(":")[0] for line in before if "flat faces with Displacement and Bump" in line]
+    assert flat == (["object 'Flat'"] if [5, 0] <= version < [5, 2] else [])
+    assert len(before) == len(tangents) + len(creases) + len(flat)
+
+
 def test_passes_that_an_integrator_leaves_black_are_named(case):
     got = case("empty_passes")
     assert got["PATH"] == {"black": [], "told": []}

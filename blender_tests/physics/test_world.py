@@ -148,7 +148,6 @@ def test_tangents_lie_across_the_ray(library):
         assert np.allclose(shown, expected, atol=4 * 2.0**-24)
 
 
-
 def test_cube_sides(library):
     """Six colours, +x -x +y -y +z -z, each seen along its axis."""
     colors = np.array([(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 0), (0, 1, 1), (1, 0, 1)], np.float32)

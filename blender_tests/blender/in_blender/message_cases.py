@@ -173,6 +173,45 @@ def by_sampling():
     return {"before": before, "after": sorted(export_told()[1].lines())}
 
 
+def meshes_apart():
+    """Return the messages of a flat, a half smooth and two anisotropic objects; then with a sky that glossy rays miss."""
+    from export_cases import export_told
+
+    stage.empty()
+    for name, method in (("Flat", "BOTH"), ("Half", "DISPLACEMENT")):
+        thing = stage.cube(material=_displaced(name, method))
+        thing.name = name
+    for number, polygon in enumerate(thing.data.polygons):
+        polygon.use_smooth = number % 2 == 0
+    brushed = stage.shader("ShaderNodeBsdfGlossy" if bpy.app.version >= (4, 0) else "ShaderNodeBsdfAnisotropic", Anisotropy=0.5)
+    tree = brushed.node_tree
+    tangent = tree.nodes.new("ShaderNodeTangent")
+    tangent.direction_type, tangent.uv_map = "UV_MAP", "Gone"
+    shader = next(node for node in tree.nodes if node.type.startswith("BSDF"))
+    tree.links.new(tangent.outputs["Tangent"], shader.inputs["Tangent"])
+    for _ in range(2):
+        stage.plane(material=brushed)
+    sky = stage.sky()
+    nodes = sky.node_tree.nodes
+    place = nodes.new("ShaderNodeTexCoord")
+    background = next(node for node in nodes if node.type == "BACKGROUND")
+    sky.node_tree.links.new(place.outputs["Generated"], background.inputs["Color"])
+    before = export_told()[1].lines()
+    sky.cycles_visibility.glossy = False
+    return {"version": list(bpy.app.version), "before": before, "after": export_told()[1].lines()}
+
+
+def _displaced(name, method):
+    material = stage.shader(name=name)
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    node, output = nodes.new("ShaderNodeDisplacement"), next(node for node in nodes if node.type == "OUTPUT_MATERIAL")
+    node.inputs["Height"].default_value = 0.6
+    links.new(node.outputs["Displacement"], output.inputs["Displacement"])
+    owner = material if hasattr(material, "displacement_method") else material.cycles
+    owner.displacement_method = method
+    return material
+
+
 def empty_passes():
     """Return, for each integrator, the passes that are all zero, and the messages."""
     import pass_cases
