@@ -34,8 +34,10 @@ SEED ?=
 
 python := $(VENV)/bin/python
 core := build/core
+# A Blender imports the project anew for each case: compiled modules are kept, outside the sources, whatever the environment asks.
+bytecode := env -u PYTHONDONTWRITEBYTECODE PYTHONPYCACHEPREFIX=$(CURDIR)/build/bytecode
 # A file's tests stay together, as they share what they have rendered; the order of files is conftest.py's.
-pytest = $(python) -m pytest -q blender_tests -n $(JOBS) --dist loadfile --no-loadscope-reorder
+pytest = $(bytecode) $(python) -m pytest -q blender_tests -n $(JOBS) --dist loadfile --no-loadscope-reorder
 tools := blender_tests/tools/start.py
 cmake := cmake -S core -G Ninja $(if $(WERROR),-DLANCER_WERROR=$(WERROR))
 # Ninja's progress line is for terminals; a log gets warnings and errors only.

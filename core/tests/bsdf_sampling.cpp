@@ -59,7 +59,7 @@ std::vector<Case> cases() {
 }
 
 constexpr double kCosines[] = {1.0, 0.7, 0.1, 0.01};
-constexpr int kDraws = 250000, kSide = 16;
+constexpr int kDraws = 100000, kSide = 16;
 
 struct Verdict {
   double p;        // chi-square of directions, including rejected and delta ones
@@ -126,7 +126,7 @@ TEST(BsdfSampling, DirectionsFollowThePdfAndWeightsTheAlbedo) {
 }
 
 TEST(BsdfSampling, AWrongRoughnessIsSeen) {
-  // Two percent of the width moves some 2 % of the mass: with 250 000 samples many times the noise of any cell.
+  // Two percent of the width moves some 2 % of the mass: with 100 000 samples many times the noise of any cell.
   for (float alpha : {1e-3f, 0.1f})
     for (double cosine : {1.0, 0.1}) {
       const Case wrong{"", {lobe(LobeKind::Beckmann, 1.0f, 1.02f * alpha)}, alpha};

@@ -1,6 +1,7 @@
 // Lobes that may transmit, anisotropic and tilted ones: samples are distributed as the pdf, and weights sum to the integral.
 #include "bsdf/bsdf.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 #include <string>
 #include <vector>
@@ -16,7 +17,7 @@ using testing::described;
 using testing::direction;
 using testing::Random;
 
-constexpr int kDraws = 64000, kSide = 16, kCells = kSide * kSide;
+constexpr int kDraws = 32000, kSide = 16, kCells = kSide * kSide;
 
 LobeInputs<float> rough(LobeKind kind, Facets facets, float roughness, float ior = 1.5f, float anisotropy = 0.0f) {
   LobeInputs<float> inputs = described(kind, roughness, ior, 0.0f, {0.9f, 0.6f, 0.3f});
@@ -40,6 +41,12 @@ struct Case {
   bool strays = false;
 
   int drawn(const glm::vec3 &wi) const { return wi.z > 0.0f ? beyond : beneath; }
+
+  // Only lobes with an index of refraction distinguish the inside.
+  bool has_inside() const {
+    return std::ranges::any_of(
+        lobes, [](const LobeInputs<float> &lobe) { return lobe.kind == LobeKind::Glass || lobe.kind == LobeKind::Refraction; });
+  }
 };
 
 // Directions above and below the plane, each side parametrised by its own square.
@@ -187,6 +194,8 @@ TEST(BsdfScatter, DirectionsFollowThePdfAndWeightsTheValue) {
   for (const Case &c : all)
     for (double cosine : kCosines)
       for (bool inside : {false, true}) {
+        if (inside && !c.has_inside())
+          continue;
         const Verdict verdict = judge(c, direction(cosine), inside, ++seed);
         EXPECT_GT(verdict.p, level) << c.name << ", cos " << cosine << (inside ? " inside" : "");
         EXPECT_GT(verdict.weight_p, level) << c.name << ", cos " << cosine << (inside ? " inside" : "");

@@ -109,7 +109,7 @@ TYPED_TEST_SUITE(LightTrees, BothTrees);
 
 TYPED_TEST(LightTrees, ProbabilitiesAddUpToOne) {
   Random random(1);
-  for (const uint32_t count : {1u, 2u, 3u, 8u, 9u, 30u, 200u, 3000u, 100000u}) {
+  for (const uint32_t count : {1u, 2u, 3u, 8u, 9u, 30u, 200u, 3000u, 20000u}) {
     // Lamps that shine in all directions, on a transparent surface: every bound is reached.
     std::vector<Light> points = any_lights(random, count);
     for (Light &light : points)
