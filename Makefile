@@ -34,7 +34,7 @@ SEED ?=
 
 python := $(VENV)/bin/python
 core := build/core
-# A Blender imports the project anew for each case: compiled modules are kept, outside the sources, whatever the environment asks.
+# Keep compiled modules, outside the sources, even if the environment forbids it: a Blender imports the project anew for each case.
 bytecode := env -u PYTHONDONTWRITEBYTECODE PYTHONPYCACHEPREFIX=$(CURDIR)/build/bytecode
 # A file's tests stay together, as they share what they have rendered; the order of files is conftest.py's.
 pytest = $(bytecode) $(python) -m pytest -q blender_tests -n $(JOBS) --dist loadfile --no-loadscope-reorder
