@@ -1,5 +1,4 @@
 // The C interface: checks handles and pointers, turns exceptions into statuses, and calls the rooms.
-#include "integrator/stages/shading.h"
 #include "objects.h"
 #include "render/session.h"
 #include "scene/fill.h"
@@ -123,8 +122,7 @@ lancer_status lancer_scene_commit(lancer_scene scene, uint32_t accelerator, uint
     // The object owns the thread, so the pointer is valid for as long as the thread works.
     SceneObject *const target = object.get();
     object->builder->start([target, accelerator, context](uint32_t) {
-      target->scene =
-          commit(std::move(target->description), static_cast<AcceleratorKind>(accelerator), surface_emission, context);
+      target->scene = commit(std::move(target->description), static_cast<AcceleratorKind>(accelerator), context);
     });
     // Change the state only after the thread has started: if memory is missing, no commit is running.
     object->state = SceneObject::State::Committing;

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "lancer.h"
-#include "render/thread_pool.h"
 #include "scene/error.h"
+#include "simd/float_environment.h"
 
 #include <cstdio>
 #include <new>

@@ -89,13 +89,15 @@ Ray aimed(Random &random, const Mesh &mesh, const Affine &to_world) {
   return make_ray(o, to_world.point(aim) - o);
 }
 
-struct Crossings {
+struct Crossings final : HitFilter {
   const Geometry *geometry;
   const Ray *rays;
   std::vector<std::vector<Hit>> of; // by ray
 
-  static bool add(void *context, size_t ray, const Hit &hit) {
-    static_cast<Crossings *>(context)->of[ray].push_back(hit);
+  Crossings(const uint8_t *asked, const Geometry &scene, const std::vector<Ray> &batch)
+      : HitFilter(asked), geometry(&scene), rays(batch.data()), of(batch.size()) {}
+  bool counts(size_t ray, const Hit &hit) override {
+    of[ray].push_back(hit);
     return false;
   }
   void sort(size_t ray) {
@@ -132,8 +134,8 @@ void expect_pairs(const Mesh &mesh, const glm::dmat3 &linear, const glm::dvec3 &
     for (size_t first = 0; first < count; first += rays.size()) {
       for (Ray &ray : rays)
         ray = aimed(random, mesh, geometry.instances[0].to_world);
-      Crossings crossings{&geometry, rays.data(), std::vector<std::vector<Hit>>(rays.size())};
-      c.accelerator->any_hit(rays, occluded, {all_asked, Crossings::add, &crossings});
+      Crossings crossings(all_asked, geometry, rays);
+      c.accelerator->any_hit(rays, occluded, crossings);
       // Every crossing once, each entry with one exit.
       for (size_t i = 0; i < rays.size(); ++i) {
         crossings.sort(i);

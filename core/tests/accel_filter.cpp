@@ -14,26 +14,22 @@ using Place = std::tuple<double, uint32_t, uint32_t>;
 Place place_of(const Hit &hit) { return {hit.t, hit.instance, hit.primitive}; }
 
 // Accepts some surfaces, chosen by number, and records the calls.
-struct Chooser {
-  uint32_t share; // one in this many counts; 0: none
-  std::vector<uint8_t> instances;
+struct Chooser final : HitFilter {
+  uint32_t share;              // one in this many counts; 0: none
+  std::vector<uint8_t> chosen; // by instance
   std::vector<std::set<Place>> asked;
 
-  Chooser(const Geometry &geometry, uint32_t one_in, size_t rays) : share(one_in), asked(rays) {
+  Chooser(const Geometry &geometry, uint32_t one_in, size_t rays) : HitFilter(nullptr), share(one_in), asked(rays) {
     for (uint32_t i = 0; i < geometry.instances.size(); ++i)
-      instances.push_back(i % 5 != 4);
+      chosen.push_back(i % 5 != 4);
+    instances = chosen.data();
   }
-  bool counts(const Hit &hit) const {
-    return !instances[hit.instance] || (share > 0 && (hit.instance * 2654435761u + hit.primitive * 40503u) / 7 % share == 0);
+  bool accepts(const Hit &hit) const {
+    return !chosen[hit.instance] || (share > 0 && (hit.instance * 2654435761u + hit.primitive * 40503u) / 7 % share == 0);
   }
-  HitFilter filter() {
-    return {instances.data(),
-            [](void *context, size_t ray, const Hit &hit) {
-              Chooser &chooser = *static_cast<Chooser *>(context);
-              chooser.asked[ray].insert(place_of(hit));
-              return chooser.counts(hit);
-            },
-            this};
+  bool counts(size_t ray, const Hit &hit) override {
+    asked[ray].insert(place_of(hit));
+    return accepts(hit);
   }
 };
 
@@ -86,11 +82,11 @@ TEST(AcceleratorFilter, GoesOnPastWhatDoesNotCount) {
       Chooser near(geometry, one_in, rays.size()), any(geometry, one_in, rays.size());
       std::vector<Hit> hits(rays.size());
       std::vector<uint8_t> occlusion(rays.size(), 7);
-      c.accelerator->closest_hit(rays, hits, near.filter());
-      c.accelerator->any_hit(rays, occlusion, any.filter());
+      c.accelerator->closest_hit(rays, hits, near);
+      c.accelerator->any_hit(rays, occlusion, any);
       for (size_t i = 0; i < rays.size(); ++i) {
         SCOPED_TRACE(testing::Message() << c.name << ", ray " << i << ", one in " << one_in);
-        const auto end = std::ranges::find_if(met[i], [&](const Hit &hit) { return near.counts(hit); });
+        const auto end = std::ranges::find_if(met[i], [&](const Hit &hit) { return near.accepts(hit); });
         ASSERT_TRUE(same_bits(hits[i], end == met[i].end() ? Hit{} : *end));
         ASSERT_EQ(occlusion[i], end != met[i].end());
         // The filter saw each layer of the chain; for a ray without occluder it saw nothing else.
@@ -120,9 +116,9 @@ TEST(AcceleratorFilter, CoincidentSurfacesAreAllAskedAbout) {
   const Ray ray = make_ray({0.5, 0.25, 2.0}, {0, 0, -1});
   for (const Contestant &c : all_accelerators(geometry)) {
     Chooser chooser(geometry, 0, 1);
-    chooser.instances.assign(3, 1);
+    chooser.chosen.assign(3, 1);
     uint8_t occluded = 7;
-    c.accelerator->any_hit({&ray, 1}, {&occluded, 1}, chooser.filter());
+    c.accelerator->any_hit({&ray, 1}, {&occluded, 1}, chooser);
     EXPECT_EQ(occluded, 0) << c.name;
     EXPECT_EQ(chooser.asked[0].size(), 6u) << c.name;
   }

@@ -1,4 +1,5 @@
 // A whole surface in lanes: every lane answers with the bits that it gives alone, whatever its neighbours are.
+#include "compile/steps.h"
 #include "random_lobes.h"
 #include "scene/material.h"
 #include "widths/bsdf_kernel.h"

@@ -1,5 +1,5 @@
 // Camera rays from kernels in lanes equal those of the general code: Sampler, PixelFilter, Camera.
-#include "integrator/stages/camera_rays.h"
+#include "integrator/stages/camera.h"
 
 #include "camera_lab.h"
 
@@ -18,7 +18,7 @@ std::vector<Started> start(const Camera &camera, const IntegratorSettings &setti
                            const std::vector<SampleAddress> &addresses, std::vector<SampleResult> &results) {
   std::vector<Started> started;
   started.reserve(addresses.size());
-  RayGenerator(camera, settings).start(addresses, false, results, [&](uint32_t slot, const Sampler &sampler) -> Ray & {
+  CameraStage(camera, settings).start(addresses, false, results, [&](uint32_t slot, const Sampler &sampler) -> Ray & {
     return started.emplace_back(Started{slot, sampler.pixel(), sampler.sample(), {}}).ray;
   });
   return started;

@@ -41,7 +41,7 @@ std::shared_ptr<const Scene> stack(Writing writing, uint32_t count, bool bump) {
   const uint32_t slot = 0;
   add_instances(description, 1, &instance, 1, &slot, nullptr, 0);
   description.world.radiance.value = glm::vec3(1.0f);
-  return commit(std::move(description), AcceleratorKind::Bvh, surface_emission, {});
+  return commit(std::move(description), AcceleratorKind::Bvh, {});
 }
 
 SampleResult look(const Scene &scene, const IntegratorSettings &settings) {

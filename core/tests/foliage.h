@@ -5,7 +5,7 @@
 #include "squares.h"
 #include "tiny_scene.h"
 
-#include "integrator/stages/shading.h"
+#include "compile/scene.h"
 #include "scene/fill.h"
 
 #include <random>
@@ -137,7 +137,7 @@ inline std::shared_ptr<const Scene> foliage(Writing writing, const Planting &pla
     std::fill(lamp.emission, lamp.emission + 3, 100.0f);
     add_light(description, lamp);
   }
-  return commit(std::move(description), planting.accelerator, surface_emission, {});
+  return commit(std::move(description), planting.accelerator, {});
 }
 
 // Looks straight down at everything.

@@ -1,6 +1,6 @@
 // Image lookups in lanes, of the environment and on surfaces: each lane has the bits of a single lookup.
+#include "integrator/stages/light.h"
 #include "lights/environment.h"
-#include "lights/light_kernel.h"
 #include "nodes/image.h"
 #include "nodes_lab.h"
 
@@ -61,14 +61,14 @@ void expect_looks(Random &random, const std::vector<Image> &images, uint32_t fla
   block.scene.images = &images;
   block.surface = false;
   block.used = random() & 0xffff;
-  for (int lane = 0; lane < kNodeLanes; ++lane) {
+  for (int lane = 0; lane < kBlockLanes; ++lane) {
     block.p[0][lane] = double(somewhere(random));
     block.p[1][lane] = double(random() % 2 ? somewhere(random) : special[random() % 8]);
   }
   NodeLanes values[2];
   node_kernel().run(program, {0, 1}, block, values);
   const auto extension = static_cast<Extension>(flags & 0xf);
-  for (int lane = 0; lane < kNodeLanes; ++lane) {
+  for (int lane = 0; lane < kBlockLanes; ++lane) {
     if (!(block.used >> lane & 1))
       continue;
     const glm::vec2 uv(float(block.p[0][lane]), float(block.p[1][lane]));
@@ -152,7 +152,7 @@ TEST(SkyLanes, TheSkyIsThatOfOneDirection) {
       nodes.scene.normalisation = &sky.normalisation;
       nodes.surface = false;
       nodes.used = 0xffff;
-      for (int lane = 0; lane < kLightLanes; ++lane) {
+      for (int lane = 0; lane < kBlockLanes; ++lane) {
         samples.u[0][lane] = float(random() >> 8) * 0x1p-24f;
         samples.u[1][lane] = random() % 8 ? float(random() >> 8) * 0x1p-24f : float(random() % 3) * 0x1p-24f;
         glm::dvec3 d(normal(random), normal(random), normal(random));
@@ -172,7 +172,7 @@ TEST(SkyLanes, TheSkyIsThatOfOneDirection) {
       light_kernel().sky_density(environment.table(transmits), seen);
       NodeLanes of_nodes[4];
       node_kernel().run(sky.world.program, sky.world.schedule, nodes, of_nodes);
-      for (int lane = 0; lane < kLightLanes; ++lane) {
+      for (int lane = 0; lane < kBlockLanes; ++lane) {
         const glm::dvec3 wi(seen.wi[0][lane], seen.wi[1][lane], seen.wi[2][lane]);
         ASSERT_EQ(seen.pdf[lane], environment.pdf(wi, transmits)) << wi.x << " " << wi.y << " " << wi.z;
         const glm::vec3 radiance = environment.radiance(wi, values, nullptr);

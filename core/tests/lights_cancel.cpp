@@ -30,7 +30,7 @@ TEST(Lights, AMeshOfManyFacesCanBeCancelled) {
   geometry.instances[0].slot_count = 1;
   std::vector<Material> materials(1);
   materials[0].emission.value = glm::vec3(1.0f);
-  const EmissionAt emission = [](const Surface &, const glm::vec3 &) { return glm::vec3(1.0f); };
+  EmissionAt emission({}, materials);
   EXPECT_FALSE(EmissiveFaces(geometry, {0}, materials, 0, false, emission, {}).empty());
   EXPECT_THROW(EmissiveFaces(geometry, {0}, materials, 0, false, emission, kCancelled), BuildCancelled);
 }

@@ -46,11 +46,15 @@ TEST(LightsChoice, KnowsItsOwnProbability) {
   const LightQuery query(glm::dvec3(2.0, 1.0, 0.0), glm::vec3(0.0f, 0.0f, 1.0f), false);
   bool lamp = false, sun = false;
   for (int i = 0; i < 64; ++i) {
-    const LightSet::Choice choice = set.choose(Geometry{}, query, (i + 0.5) / 64.0);
+    LightChoice choice = set.binary_tree().choose(query, (i + 0.5) / 64.0);
+    if (choice.number == set.size()) {
+      const LightChoice of_many = set.wide_tree().choose(query, choice.u);
+      choice = {of_many.number, choice.probability * of_many.probability, of_many.u};
+    }
     ASSERT_GT(choice.probability, 0.0);
     // The two ways multiply floats in another order.
-    EXPECT_NEAR(choice.probability, set.probability(query, choice.light), 1e-5 * choice.probability);
-    (choice.light == 10 ? sun : lamp) = true;
+    EXPECT_NEAR(choice.probability, set.probability(query, choice.number), 1e-5 * choice.probability);
+    (choice.number == 10 ? sun : lamp) = true;
   }
   EXPECT_TRUE(lamp && sun);
 }

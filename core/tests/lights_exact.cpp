@@ -1,12 +1,14 @@
 // Exact surfaces that emit: samples cover each part by its area, with the density that belongs to the whole area.
 #include "lights/emitter.h"
+#include "nodes_lab.h"
+#include "scene/fill.h"
 #include "scene/geometry.h"
 #include "scene/material.h"
 
 #include <glm/gtc/constants.hpp>
 #include <gtest/gtest.h>
 
-namespace lancer {
+namespace lancer_test {
 namespace {
 
 struct Shares {
@@ -24,13 +26,14 @@ Shares shares_of(ShapeKind kind, double area) {
   std::vector<Material> materials(1);
   materials[0].emission.value = glm::vec3(1.0f);
   const std::vector<uint32_t> slots{0};
-  const Emitter emitter(geometry, slots, materials, 0, [](const Surface &, const glm::vec3 &) { return glm::vec3(1.0f); });
+  EmissionAt emission({}, materials);
+  const Emitter emitter(geometry, slots, materials, 0, emission);
   const glm::dvec3 p(3.0, 4.0, 5.0);
   Shares shares;
   for (int i = 0; i < kSide * kSide; ++i) {
     const glm::vec2 u((float(i % kSide) + 0.5f) / kSide, (float(i / kSide) + 0.5f) / kSide);
     Surface surface;
-    const LightSample sample = emitter.sample(geometry, slots, p, u, surface);
+    const LightSample sample = emitter.sample_shape(geometry, slots, p, u, surface);
     const double cosine = std::abs(glm::dot(glm::dvec3(surface.ng), sample.wi));
     // Normals are floats: their rounding is a share of 6e-8 / cosine of it.
     EXPECT_NEAR(sample.pdf * area * cosine, sample.distance * sample.distance,
@@ -75,20 +78,28 @@ TEST(LightsExact, PowersOfFacesAreMeansOverThem) {
   Mesh &mesh = geometry.meshes.emplace_back();
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
   mesh.triangles = {{0, 1, 2}, {3, 2, 1}};
+  mesh.material_slots = {0, 1};
   Instance &instance = geometry.instances.emplace_back();
-  instance.slot_count = 1;
+  instance.slot_count = 2;
   instance.place(Affine{});
-  std::vector<Material> materials(1);
-  materials[0].program.nodes.resize(1);
-  materials[0].emission.node = 0;
-  materials[0].emission_nodes = {0};
-  const auto emission = [](const Surface &surface, const glm::vec3 &) {
-    const bool middle = std::abs(surface.bary.x - 1.0 / 3.0) + std::abs(surface.bary.y - 1.0 / 3.0) < 0.01;
-    return glm::vec3(surface.primitive == 1 ? 1.0f : middle ? 4.0f : 0.0f);
-  };
-  const EmissiveFaces faces(geometry, {0}, materials, 0, false, emission, BuildContext{});
+  // All weights of the middle exceed 1/4; at the other places, two of them do not.
+  const lancer_node nodes[] = {
+      node(LANCER_NODE_COORDINATE, LANCER_COORDINATE_PARAMETRIC),
+      node(LANCER_NODE_SEPARATE, 0, {result_of(0)}),
+      node(LANCER_NODE_SEPARATE, 1, {result_of(0)}),
+      node(LANCER_NODE_MATH, LANCER_MATH_MINIMUM, {result_of(1), result_of(2), constant(0.0f)}),
+      node(LANCER_NODE_MATH, LANCER_MATH_GREATER_THAN, {result_of(3), constant(0.25f), constant(0.0f)}),
+      node(LANCER_NODE_MATH, LANCER_MATH_MULTIPLY, {result_of(4), constant(4.0f), constant(0.0f)})};
+  Description description;
+  std::vector<Material> materials(2);
+  materials[0].program = read_program(description, "middle", nodes, std::size(nodes));
+  materials[0].emission.node = 5;
+  materials[0].emission_nodes = materials[0].program.schedule(std::span(&materials[0].emission, 1));
+  materials[1].emission.value = glm::vec3(1.0f);
+  EmissionAt emission({.geometry = &geometry}, materials);
+  const EmissiveFaces faces(geometry, {0, 1}, materials, 0, false, emission, BuildContext{});
   EXPECT_NEAR(faces.by_power().pmf(0), 0.5f, 1e-6f);
 }
 
 } // namespace
-} // namespace lancer
+} // namespace lancer_test

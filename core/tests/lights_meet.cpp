@@ -108,9 +108,9 @@ TEST(Lights, ManyAreMetAsOneByOne) {
   int met = 0;
   for (int round = 0; round < 1500; ++round) {
     SegmentBlock ways{};
-    glm::dvec3 o[kLightLanes], wi[kLightLanes];
-    for (int lane = 0; lane < kLightLanes; ++lane) {
-      const int i = round * kLightLanes + lane;
+    glm::dvec3 o[kBlockLanes], wi[kBlockLanes];
+    for (int lane = 0; lane < kBlockLanes; ++lane) {
+      const int i = round * kBlockLanes + lane;
       // Also from distances at which float does not separate small lamps from their neighbours.
       o[lane] = (i % 7 ? 500.0 : 1e7) * glm::dvec3(uniform(random), uniform(random), uniform(random));
       // Aim at lights, and along the axes, parallel to the slabs of the boxes.
@@ -124,8 +124,8 @@ TEST(Lights, ManyAreMetAsOneByOne) {
         ways.d[axis][lane] = 3.0 * wi[lane][axis];
       }
     }
-    const int count = round % 2 ? kLightLanes : 5;
-    std::vector<bool> candidates(size_t(kLightLanes) * 300);
+    const int count = round % 2 ? kBlockLanes : 5;
+    std::vector<bool> candidates(size_t(kBlockLanes) * 300);
     set.wide_tree().along(ways, uint32_t(count), [&](uint32_t lane, uint32_t number) {
       EXPECT_FALSE(candidates[lane * 300 + number]);
       candidates[lane * 300 + number] = true;
@@ -160,8 +160,8 @@ TEST(Lights, TheDeepestTreeIsSearchedToItsEnd) {
   const LightSet set(lights, {}, 0, Environment());
   const glm::dvec3 o(-1.0, -1.0, 5.0);
   // Aim at every one.
-  for (uint32_t first = 0; first < lights.size(); first += kLightLanes) {
-    const uint32_t count = std::min(uint32_t(kLightLanes), uint32_t(lights.size()) - first);
+  for (uint32_t first = 0; first < lights.size(); first += kBlockLanes) {
+    const uint32_t count = std::min(uint32_t(kBlockLanes), uint32_t(lights.size()) - first);
     SegmentBlock ways{};
     for (uint32_t lane = 0; lane < count; ++lane) {
       for (int axis = 0; axis < 3; ++axis) {

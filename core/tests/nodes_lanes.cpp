@@ -16,14 +16,14 @@ protected:
   Random random{7};
   NodeWorld world{random};
   NodeBlock block{};
-  std::vector<NodeContext> places = std::vector<NodeContext>(kNodeLanes);
-  std::vector<Surface> surfaces = std::vector<Surface>(kNodeLanes);
+  std::vector<NodeContext> places = std::vector<NodeContext>(kBlockLanes);
+  std::vector<Surface> surfaces = std::vector<Surface>(kBlockLanes);
 
   void SetUp() override {
     block.scene = {&world.description.geometry, &world.description.images, &world.normalisation, &world.camera};
   }
 
-  template <class T> static void put(const glm::vec<3, T> &v, T (&to)[3][kNodeLanes], int lane) {
+  template <class T> static void put(const glm::vec<3, T> &v, T (&to)[3][kBlockLanes], int lane) {
     for (int axis = 0; axis < 3; ++axis)
       to[axis][lane] = v[axis];
   }
@@ -35,7 +35,7 @@ protected:
     block.used &= 0xffff;
     block.backfacing = 0;
     const uint32_t instance = random() % 5;
-    for (int i = 0; i < kNodeLanes; ++i) {
+    for (int i = 0; i < kBlockLanes; ++i) {
       NodeContext &at = places[size_t(i)];
       at = {};
       static_cast<NodeScene &>(at) = block.scene;
@@ -78,7 +78,7 @@ protected:
       put(at.wo, block.wo, i);
     }
     // Unused registers may hold anything.
-    for (int i = 0; i < kNodeLanes; ++i)
+    for (int i = 0; i < kBlockLanes; ++i)
       if (!(block.used >> i & 1)) {
         block.instance[i] = block.primitive[i] = 0xdeadbeef;
         block.bary[0][i] = block.p[1][i] = NAN;
@@ -97,7 +97,7 @@ protected:
         for (float &x : component)
           x = any_number(random);
     std::vector<glm::vec4> want;
-    for (int i = 0; i < kNodeLanes; ++i) {
+    for (int i = 0; i < kBlockLanes; ++i) {
       std::vector<glm::vec4> values;
       for (const NodeLanes &of : given)
         values.push_back({of.of[0][i], of.of[1][i], of.of[2][i], of.of[3][i]});
@@ -108,7 +108,7 @@ protected:
     for (const NodeKernel *kernel : LANCER_EACH_KERNEL(node_kernel)) {
       std::vector<NodeLanes> values = given;
       kernel->run(program, schedule, block, values.data());
-      for (int i = 0; i < kNodeLanes; ++i)
+      for (int i = 0; i < kBlockLanes; ++i)
         for (int k = 0; k < 4; ++k)
           if (block.used >> i & 1) {
             ASSERT_EQ(bits_of(values.back().of[k][i]), bits_of(want[size_t(i)][k]))
@@ -117,7 +117,7 @@ protected:
           }
       // Other nodes keep their values, also those of a bump's height.
       for (size_t of = 0; of + 1 < values.size(); ++of)
-        for (int i = 0; i < kNodeLanes; ++i)
+        for (int i = 0; i < kBlockLanes; ++i)
           if (block.used >> i & 1) {
             ASSERT_EQ(bits_of(values[of].of[0][i]), bits_of(given[of].of[0][i])) << "node " << of << " of " << kernel->name;
           }

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "bsdf/fresnel.h"
-#include "compile/ready_lobes.h"
+#include "bsdf/ready_lobe.h"
 #include "principled_lab.h"
 #include "statistics.h"
 

@@ -1,5 +1,5 @@
 // Lobes prepared once for a material equal those made at every hit.
-#include "compile/ready_lobes.h"
+#include "compile/steps.h"
 #include "scene/material.h"
 
 #include "bsdf/build.h"

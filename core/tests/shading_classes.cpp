@@ -1,7 +1,7 @@
 // Classes of materials that may be shaded in the same lanes.
 #include "compile/features.h"
 
-#include "compile/ready_lobes.h"
+#include "compile/steps.h"
 #include "lancer.h"
 
 #include <gtest/gtest.h>

@@ -44,7 +44,7 @@ std::vector<glm::vec3> one_traversal(const Scene &scene, uint32_t deepest) {
   IntegratorSettings settings;
   settings.transparent_shadows = deepest;
   const Camera camera = camera_above(scene, 1);
-  ShadowQueue queue(scene, camera, settings);
+  ShadowStage queue(scene, camera, settings);
   uint32_t slot = 0;
   for (const Question &question : questions(scene))
     queue.push(question.ray, {.slot = slot++}, glm::vec3(1.0f), question.passed);

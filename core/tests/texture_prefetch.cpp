@@ -2,8 +2,8 @@
 #include "nodes_lab.h"
 #include "tiny_scene.h"
 
+#include "compile/scene.h"
 #include "integrator/sample.h"
-#include "integrator/stages/shading.h"
 #include "integrator/stages/texture_prefetch.h"
 #include "nodes/image.h"
 #include "scene/surface.h"
@@ -122,7 +122,7 @@ std::shared_ptr<const Scene> row(Extension extension, bool by_hand, uint32_t sid
   instances[uint32_t(Thing::OfTheOtherSlot)].slot_count = 2;
   add_instances(description, kThings, instances.data(), uint32_t(std::size(slots)), slots, nullptr, 0);
   description.world.radiance.value = glm::vec3(1.0f);
-  return commit(std::move(description), AcceleratorKind::Bvh, surface_emission, {});
+  return commit(std::move(description), AcceleratorKind::Bvh, {});
 }
 
 // Looks straight down at this many pixels of each object, in world units.

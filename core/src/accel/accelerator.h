@@ -22,8 +22,8 @@ public:
   // Sets occluded[i] to 1 if rays[i] hits anything, else to 0.
   void any_hit(std::span<const Ray> rays, std::span<uint8_t> occluded) const { find(rays, occluded, nullptr); }
   // The same queries over the hits that pass a filter.
-  void closest_hit(std::span<const Ray> rays, std::span<Hit> hits, const HitFilter &filter) const { find(rays, hits, &filter); }
-  void any_hit(std::span<const Ray> rays, std::span<uint8_t> occluded, const HitFilter &filter) const {
+  void closest_hit(std::span<const Ray> rays, std::span<Hit> hits, HitFilter &filter) const { find(rays, hits, &filter); }
+  void any_hit(std::span<const Ray> rays, std::span<uint8_t> occluded, HitFilter &filter) const {
     find(rays, occluded, &filter);
   }
   // Counts the work of closest_hit() or any_hit() on these rays; zeros unless this is the wide BVH.
@@ -34,8 +34,8 @@ public:
 
 private:
   // filter: null if every hit counts.
-  virtual void find(std::span<const Ray> rays, std::span<Hit> hits, const HitFilter *filter) const = 0;
-  virtual void find(std::span<const Ray> rays, std::span<uint8_t> occluded, const HitFilter *filter) const = 0;
+  virtual void find(std::span<const Ray> rays, std::span<Hit> hits, HitFilter *filter) const = 0;
+  virtual void find(std::span<const Ray> rays, std::span<uint8_t> occluded, HitFilter *filter) const = 0;
 };
 
 // geometry must outlive the accelerator.

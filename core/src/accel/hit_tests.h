@@ -15,12 +15,10 @@ bool intersect_quadric(const PlacedShape &shape, const Ray &ray, bool leaves, do
 
 // Returns whether a hit of a ray counts; without a filter every hit does.
 struct Counting {
-  const HitFilter *filter = nullptr;
+  HitFilter *filter = nullptr;
   size_t ray = 0; // number in its batch
 
-  bool operator()(const Hit &hit) const {
-    return !filter || !filter->instances[hit.instance] || filter->counts(filter->context, ray, hit);
-  }
+  bool operator()(const Hit &hit) const { return !filter || !filter->instances[hit.instance] || filter->counts(ray, hit); }
 };
 
 inline void try_triangle(const Ray &ray, const RayAxes &axes, const ShearedRay<double> &sheared, const Mesh &mesh,

@@ -2,7 +2,6 @@
 #include "accel/coplanar/coplanar_faces.h"
 #include "compile/features.h"
 #include "compile/mesh_normals.h"
-#include "compile/ready_lobes.h"
 #include "compile/scene.h"
 #include "compile/steps.h"
 #include "simd/parallel.h"
@@ -89,8 +88,8 @@ PlaneRules plane_rules(const Scene &scene) {
   return rules;
 }
 
-LightSet make_lights(const Scene &scene, const Description &description, const EmissionAt &emission,
-                     const BuildContext &context) {
+LightSet make_lights(const Scene &scene, const Description &description, const BuildContext &context) {
+  EmissionAt emission(scene.node_scene(nullptr), scene.materials);
   std::vector<Light> lights;
   for (const LightDescription &light : description.lights)
     lights.push_back(place_light(light, scene.normalisation));
@@ -102,8 +101,7 @@ LightSet make_lights(const Scene &scene, const Description &description, const E
 
 } // namespace
 
-std::shared_ptr<const Scene> commit(Description description, AcceleratorKind kind, EmissionOf emission_of,
-                                    const BuildContext &context) {
+std::shared_ptr<const Scene> commit(Description description, AcceleratorKind kind, const BuildContext &context) {
   const auto start = std::chrono::steady_clock::now();
   auto scene = std::make_shared<Scene>();
   const Features features = find_features(description);
@@ -144,7 +142,7 @@ std::shared_ptr<const Scene> commit(Description description, AcceleratorKind kin
     if (instance.shading == Shading::Flat && mesh.centers.empty())
       mesh.centers = polygon_centers(mesh);
   }
-  scene->lights = make_lights(*scene, description, emission_of(*scene), context);
+  scene->lights = make_lights(*scene, description, context);
   scene->accelerator = build_accelerator(kind, scene->geometry, plane_rules(*scene), context);
   scene->messages = description.messages.text();
   scene->build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -1,7 +1,7 @@
 #include "compile/features.h"
 
 #include "bsdf/lobe.h"
-#include "compile/ready_lobes.h"
+#include "bsdf/ready_lobe.h"
 #include "lancer.h"
 #include "scene/description.h"
 

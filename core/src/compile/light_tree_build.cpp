@@ -122,7 +122,7 @@ bool any_aimed(const LightBranch &branch) {
 } // namespace
 
 LightTree::LightTree(std::vector<DescribedLight> lights, uint32_t count, const BuildContext &context)
-    : kernel_(&light_kernel()), place_of_(count, kNone) {
+    : kernel_(&tree_kernel()), place_of_(count, kNone) {
   bounds_ = prepare(lights);
   if (lights.empty())
     return;

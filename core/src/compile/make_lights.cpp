@@ -151,8 +151,7 @@ Light place_light(const LightDescription &from, const Normalisation &normalisati
 }
 
 std::vector<Emitter> make_emitters(const Geometry &geometry, const std::vector<uint32_t> &slots,
-                                   const std::vector<Material> &materials, const EmissionAt &emission,
-                                   const BuildContext &context) {
+                                   const std::vector<Material> &materials, EmissionAt &emission, const BuildContext &context) {
   // Collect the emitting instances: exact surfaces alone, meshes grouped by mesh and materials.
   using Key = std::pair<uint32_t, std::vector<uint32_t>>;
   struct Shared {

@@ -1,4 +1,4 @@
-#include "compile/ready_lobes.h"
+#include "compile/steps.h"
 
 #include "scene/material.h"
 

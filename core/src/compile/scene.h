@@ -29,17 +29,15 @@ struct Scene {
   uint64_t triangles = 0; // over all instances
   double build_seconds = 0.0;
 
+  // Returns the data that any node may read. camera: may be null.
+  NodeScene node_scene(const Camera *camera) const { return {&geometry, &images, &normalisation, camera}; }
   // Returns the number that the user gave a primitive.
   uint32_t face_number(uint32_t instance, uint32_t primitive) const;
   size_t geometry_bytes() const; // with lights, without images
   size_t texture_bytes() const;
 };
 
-// Returns the function that evaluates the emission of a scene's surfaces; the scene must outlive the function.
-using EmissionOf = EmissionAt (*)(const Scene &scene);
-
 // Turns a description into a scene. Throws Error, or BuildCancelled when context.cancel is raised.
-std::shared_ptr<const Scene> commit(Description description, AcceleratorKind kind, EmissionOf emission_of,
-                                    const BuildContext &context);
+std::shared_ptr<const Scene> commit(Description description, AcceleratorKind kind, const BuildContext &context);
 
 } // namespace lancer

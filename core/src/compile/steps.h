@@ -2,6 +2,7 @@
 #pragma once
 
 #include "accel/accelerator.h"
+#include "bsdf/ready_lobe.h"
 #include "lights/emitter.h"
 #include "lights/light.h"
 #include "scene/affine.h"
@@ -20,6 +21,9 @@ MaterialDemand demand_of(const Material &material);
 // Reports the lobes and frames that exceed the capacity of a BSDF.
 void report_limits(const std::string &object, const Material &material, Messages &messages);
 
+// Computes the parts of each lobe that are the same at every hit.
+std::shared_ptr<const ReadyLobe[]> make_ready_lobes(const Material &material);
+
 // Moves the vertices of every mesh whose materials displace, and recomputes the mesh's normals. A mesh whose instances have
 // different displacing materials is copied for each list of them.
 void displace(Description &description, const BuildContext &context);
@@ -33,7 +37,6 @@ Light place_light(const LightDescription &from, const Normalisation &normalisati
 // Returns one emitter for each instance that can be sampled. Instances of one mesh with the same materials share the tree of
 // its faces.
 std::vector<Emitter> make_emitters(const Geometry &geometry, const std::vector<uint32_t> &slots,
-                                   const std::vector<Material> &materials, const EmissionAt &emission,
-                                   const BuildContext &context);
+                                   const std::vector<Material> &materials, EmissionAt &emission, const BuildContext &context);
 
 } // namespace lancer

@@ -13,7 +13,7 @@ std::unique_ptr<Integrator> make_integrator(const Scene &scene, const Camera &ca
   case IntegratorKind::Path:
     break;
   }
-  return make_path(scene, camera, settings);
+  return std::make_unique<PathIntegrator>(scene, camera, settings);
 }
 
 } // namespace lancer

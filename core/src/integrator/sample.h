@@ -169,19 +169,4 @@ protected:
 // scene and camera must outlive the integrator.
 std::unique_ptr<Integrator> make_integrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings);
 
-// Dimensions of the sampler: the camera's, then eight per vertex of a path.
-enum Dimension : uint32_t { kDimensionPixel = 0, kDimensionLens = 2, kDimensionVertex = 4 };
-enum VertexDimension : uint32_t {
-  kVertexBsdf = 0,
-  kVertexLight = 2,
-  kVertexLightChoice = 4,
-  kVertexLobe = 5,
-  kVertexRoulette = 6,
-  kVertexLightDigits = 7, // more digits of the choice, which a million faces need
-  kVertexStride = 8
-};
-// Layers of opacity have their own dimensions, far behind the others.
-inline constexpr uint32_t kDimensionOpacity = 1u << 16;
-inline constexpr uint32_t kMaxCrossings = 1025;
-
 } // namespace lancer

@@ -1,6 +1,5 @@
 #include "lights/emissive_faces.h"
 
-#include "sampling/color.h"
 #include "simd/parallel.h"
 
 #include <cmath>
@@ -42,21 +41,8 @@ Surface point_of(const Geometry &geometry, const std::vector<uint32_t> &slots, u
 
 } // namespace
 
-bool is_light(const Material &material) { return material.emits() && !(material.flags & LANCER_MATERIAL_NOT_A_LIGHT); }
-
-bool emission_varies(const Material &material) { return material.emission.varies() || material.layered_emission; }
-
-double emission_level(const glm::vec3 &radiance) {
-  const double level = double(mean(glm::abs(radiance)));
-  return std::isfinite(level) ? level : 0.0;
-}
-
-double emission_level(const EmissionAt &emission, const Surface &surface) {
-  return std::max(emission_level(emission(surface, surface.ng)), emission_level(emission(surface, -surface.ng)));
-}
-
 std::vector<double> EmissiveFaces::powers(const Geometry &geometry, const std::vector<uint32_t> &slots,
-                                          const std::vector<Material> &materials, uint32_t instance, const EmissionAt &emission,
+                                          const std::vector<Material> &materials, uint32_t instance, EmissionAt &emission,
                                           const BuildContext &context) const {
   const Instance &placed = geometry.instances[instance];
   const Mesh &mesh = geometry.meshes[placed.mesh];
@@ -78,7 +64,7 @@ std::vector<double> EmissiveFaces::powers(const Geometry &geometry, const std::v
       level = 0.0;
       const int looks = by_nodes ? 4 : 1;
       for (int i = 0; i < looks; ++i)
-        level += emission_level(emission, point_of(geometry, slots, instance, face, kLooks[i])) / looks;
+        level += emission.level(point_of(geometry, slots, instance, face, kLooks[i])) / looks;
       textured[face] = by_nodes;
       looked_at += by_nodes ? area : 0.0;
       seen += by_nodes ? level * area : 0.0;
@@ -94,8 +80,8 @@ std::vector<double> EmissiveFaces::powers(const Geometry &geometry, const std::v
 }
 
 EmissiveFaces::EmissiveFaces(const Geometry &geometry, const std::vector<uint32_t> &slots,
-                             const std::vector<Material> &materials, uint32_t instance, bool of_mesh,
-                             const EmissionAt &emission, const BuildContext &context)
+                             const std::vector<Material> &materials, uint32_t instance, bool of_mesh, EmissionAt &emission,
+                             const BuildContext &context)
     : of_mesh_(of_mesh) {
   const Instance &placed = geometry.instances[instance];
   const Mesh &mesh = geometry.meshes[placed.mesh];

@@ -1,42 +1,25 @@
 // The emitting faces of a mesh and the choice among them. Instances of one mesh with the same materials share this record.
 #pragma once
 
+#include "lights/emission.h"
 #include "lights/light_tree.h"
 #include "sampling/distribution.h"
 #include "scene/material.h"
 
-#include <functional>
-
 namespace lancer {
-
-// Returns the radiance that a surface emits towards the unit world direction wo; the caller evaluates nodes and layers.
-using EmissionAt = std::function<glm::vec3(const Surface &surface, const glm::vec3 &wo)>;
-
-// Return whether light sampling chooses faces with this material, and whether their emission differs from place to place.
-bool is_light(const Material &material);
-bool emission_varies(const Material &material);
-// Returns the weight of emitted light in a choice: the mean of the channels; 0 where no channel is positive or the mean is not
-// finite.
-double emission_level(const glm::vec3 &radiance);
-// Returns the weight of a surface, seen along its normal from the brighter side.
-double emission_level(const EmissionAt &emission, const Surface &surface);
 
 class EmissiveFaces {
 public:
   // of_mesh: the tree is made in the object's space and serves all instances, with the emission that this instance has;
   // otherwise it is made in world space. Throws BuildCancelled.
   EmissiveFaces(const Geometry &geometry, const std::vector<uint32_t> &slots, const std::vector<Material> &materials,
-                uint32_t instance, bool of_mesh, const EmissionAt &emission, const BuildContext &context);
+                uint32_t instance, bool of_mesh, EmissionAt &emission, const BuildContext &context);
 
   bool empty() const { return tree_.empty(); }
   // The choice by power, for callers without a shading normal.
   const WeightedChoice &by_power() const { return by_power_; }
-  // Chooses a face by an upper bound of the light that the point gets from each.
-  LightChoice choose(const Instance &placed, const LightQuery &query, double u) const {
-    return tree_.choose(to_tree(placed, query), u);
-  }
-  // Returns the walk that chooses a face for one point. Walks for several points are made together, and may belong to different
-  // instances of the mesh.
+  // Returns the walk that chooses a face for one point, by an upper bound of the light that the point gets from each. Walks for
+  // several points are made together, and may belong to different instances of the mesh.
   LightWalk walk(const Instance &placed, const LightQuery &query, double u) const {
     return LightTree::walk(to_tree(placed, query), u);
   }
@@ -51,7 +34,7 @@ public:
 private:
   // Returns radiance times area of each face, in the space of the tree.
   std::vector<double> powers(const Geometry &geometry, const std::vector<uint32_t> &slots,
-                             const std::vector<Material> &materials, uint32_t instance, const EmissionAt &emission,
+                             const std::vector<Material> &materials, uint32_t instance, EmissionAt &emission,
                              const BuildContext &context) const;
   LightQuery to_tree(const Instance &placed, const LightQuery &query) const;
 

@@ -1,4 +1,3 @@
-
 #include "lights/emitter.h"
 
 #include "lights/seen_face.h"
@@ -59,17 +58,6 @@ double area_scale(const Instance &instance, const glm::dvec3 &n) {
   return std::abs(glm::determinant(instance.to_world.linear)) * glm::length(glm::transpose(instance.to_object.linear) * n);
 }
 
-// Returns a point of a mesh's face by the weights of its corners 1 and 2.
-Surface face_point(const Geometry &geometry, const std::vector<uint32_t> &slots, uint32_t instance, uint32_t face,
-                   const Vector2<double> &weights) {
-  Hit hit;
-  hit.instance = instance;
-  hit.primitive = face;
-  hit.u = weights.x;
-  hit.v = weights.y;
-  return surface_at(geometry, slots, Ray{}, hit);
-}
-
 // Returns a point of an exact surface, hit at t = 1 by a ray along the normal, as the surface stage expects.
 Surface part_point(const Geometry &geometry, const std::vector<uint32_t> &slots, uint32_t instance, int part,
                    const glm::vec2 &u) {
@@ -92,7 +80,7 @@ Emitter::Emitter(const Geometry &geometry, uint32_t instance, std::shared_ptr<co
       bounds_(faces->bounds(geometry.instances[instance])), faces_(std::move(faces)) {}
 
 Emitter::Emitter(const Geometry &geometry, const std::vector<uint32_t> &slots, const std::vector<Material> &materials,
-                 uint32_t instance, const EmissionAt &emission)
+                 uint32_t instance, EmissionAt &emission)
     : instance_(instance), hidden_from_(geometry.instances[instance].hidden_from) {
   const Instance &placed = geometry.instances[instance_];
   const uint32_t number = material_of(geometry, slots, instance_, 0);
@@ -104,7 +92,7 @@ Emitter::Emitter(const Geometry &geometry, const std::vector<uint32_t> &slots, c
     level = 0.0;
     for (int i = 0; i < 64; ++i) {
       const glm::vec2 u((float(i % 8) + 0.5f) / 8.0f, (float(i / 8) + 0.5f) / 8.0f);
-      level += emission_level(emission, part_point(geometry, slots, instance_, 0, u)) / 64.0;
+      level += emission.level(part_point(geometry, slots, instance_, 0, u)) / 64.0;
     }
   }
   // Parts are weighted by their unit areas; the density accounts for the scale of the map.
@@ -119,32 +107,15 @@ Emitter::Emitter(const Geometry &geometry, const std::vector<uint32_t> &slots, c
   bounds_.energy = level * part_area(placed.kind, 0) * mean_area_scale(placed.to_world.linear);
 }
 
-LightSample Emitter::sample(const Geometry &geometry, const std::vector<uint32_t> &slots, const glm::dvec3 &p,
-                            const glm::vec2 &u, Surface &surface) const {
-  if (!faces_)
-    return sample_face(geometry, slots, 0, p, u, surface);
-  // The rest of the random number places the point on the face.
-  const auto choice = faces_->by_power().sample(u.x);
-  LightSample sample = sample_face(geometry, slots, choice.index, p, {choice.u, u.y}, surface);
-  sample.pdf *= double(choice.pmf);
-  return sample;
-}
-
 double Emitter::pdf(const Geometry &geometry, const glm::dvec3 &p, const Surface &surface) const {
   const double pdf = face_pdf(geometry, p, surface);
   return faces_ ? double(faces_->by_power().pmf(surface.primitive)) * pdf : pdf;
 }
 
-LightSample Emitter::sample_face(const Geometry &geometry, const std::vector<uint32_t> &slots, uint32_t face,
-                                 const glm::dvec3 &p, const glm::vec2 &u, Surface &surface) const {
-  if (faces_) {
-    const Vector2<double> weights = see_face(geometry, geometry.instances[instance_], face, p).sample(u.x, u.y);
-    surface = face_point(geometry, slots, instance_, face, weights);
-  } else {
-    const auto part = parts_.sample(u.x);
-    surface = part_point(geometry, slots, instance_, int(part.index), {part.u, u.y});
-  }
-
+LightSample Emitter::sample_shape(const Geometry &geometry, const std::vector<uint32_t> &slots, const glm::dvec3 &p,
+                                  const glm::vec2 &u, Surface &surface) const {
+  const auto part = parts_.sample(u.x);
+  surface = part_point(geometry, slots, instance_, int(part.index), {part.u, u.y});
   LightSample sample;
   const glm::dvec3 v = surface.p - p;
   sample.distance = glm::length(v);

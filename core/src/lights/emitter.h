@@ -15,7 +15,7 @@ public:
   Emitter(const Geometry &geometry, uint32_t instance, std::shared_ptr<const EmissiveFaces> faces);
   // Makes the emitter of an exact surface; empty() holds where the surface emits nothing.
   Emitter(const Geometry &geometry, const std::vector<uint32_t> &slots, const std::vector<Material> &materials,
-          uint32_t instance, const EmissionAt &emission);
+          uint32_t instance, EmissionAt &emission);
 
   bool empty() const { return !(bounds_.energy > 0.0); }
   uint32_t instance() const { return instance_; }
@@ -23,23 +23,17 @@ public:
   const LightBounds &bounds() const { return bounds_; }
   const std::shared_ptr<const EmissiveFaces> &faces() const { return faces_; }
 
-  // Chooses a face for the point of the query and returns its probability. An exact surface has a single face, number 0.
-  LightChoice choose_face(const Geometry &geometry, const LightQuery &query, double u) const {
-    return faces_ ? faces_->choose(geometry.instances[instance_], query, u) : LightChoice{0, 1.0, u};
-  }
+  // Returns the probability with which a light sample at the point of the query chooses a face.
   double face_probability(const Geometry &geometry, const LightQuery &query, uint32_t face) const {
     return faces_ ? faces_->probability(geometry.instances[instance_], query, face) : double(!empty());
   }
-  // Samples a point of a face as seen from p and writes it to surface. radiance stays 0: the caller evaluates the material at
-  // that point.
-  LightSample sample_face(const Geometry &geometry, const std::vector<uint32_t> &slots, uint32_t face, const glm::dvec3 &p,
-                          const glm::vec2 &u, Surface &surface) const;
-  // Returns the density per solid angle with which sample_face() returns this surface point from p, once its face is chosen.
+  // Samples a point of an exact surface, seen from p, and writes it to surface. radiance stays 0: the caller evaluates the
+  // material at that point.
+  LightSample sample_shape(const Geometry &geometry, const std::vector<uint32_t> &slots, const glm::dvec3 &p,
+                           const glm::vec2 &u, Surface &surface) const;
+  // Returns the density per solid angle with which a light sample gives this surface point from p, once its face is chosen.
   double face_pdf(const Geometry &geometry, const glm::dvec3 &p, const Surface &surface) const;
-
-  // sample() and pdf() choose the face by power alone.
-  LightSample sample(const Geometry &geometry, const std::vector<uint32_t> &slots, const glm::dvec3 &p, const glm::vec2 &u,
-                     Surface &surface) const;
+  // The same for a face that is chosen by power alone.
   double pdf(const Geometry &geometry, const glm::dvec3 &p, const Surface &surface) const;
 
 private:

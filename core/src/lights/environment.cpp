@@ -1,7 +1,7 @@
 #include "lights/environment.h"
 
 #include "nodes/run.h"
-#include "sampling/color.h"
+#include "scene/color.h"
 #include "simd/parallel.h"
 
 #include <cmath>

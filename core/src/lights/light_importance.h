@@ -83,7 +83,7 @@ LANCER_LANE Importance<F> importance(const LightQueryLanes<F> &query, const Ligh
   const F most = energy * max(cos_i_least, slack) * max(cos_out_least, slack) / near2;
   const M sure = (cos_theta >= zero) & (view.cos_u >= zero) & (outer >= cone.cos_full);
   const F least = abs(cos_i_most * energy * (outer * cone.cos_o - sine_of(outer) * cone.sin_o)) / far2;
-  return where<F>(able, {max(most, F(kLeastImportance)), select(sure, least, zero)});
+  return where<F>(able, Importance<F>{max(most, F(kLeastImportance)), select(sure, least, zero)});
 }
 
 // The importance of a box of lights: the most frequent case.

@@ -61,22 +61,6 @@ LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, siz
   }
 }
 
-LightSet::Choice LightSet::choose(const Geometry &geometry, const LightQuery &query, double u) const {
-  return choose_within(geometry, query, binary_tree_.choose(query, u));
-}
-
-LightSet::Choice LightSet::choose_within(const Geometry &geometry, const LightQuery &query, LightChoice light) const {
-  if (light.number == size() && light.probability > 0.0) {
-    const double of_many = light.probability;
-    light = wide_tree_.choose(query, light.u);
-    light.probability *= of_many;
-  }
-  if (!(light.probability > 0.0) || light.number < lights_.size() || light.number - lights_.size() >= emitters_.size())
-    return {light.number, 0, light.probability};
-  const LightChoice face = emitters_[light.number - lights_.size()].choose_face(geometry, query, light.u);
-  return {light.number, face.number, light.probability * face.probability};
-}
-
 double LightSet::probability(const LightQuery &query, uint32_t light) const {
   const double of_many = wide_tree_.empty() ? 0.0 : wide_tree_.probability(query, light);
   return of_many > 0.0 ? of_many * binary_tree_.probability(query, uint32_t(size())) : binary_tree_.probability(query, light);

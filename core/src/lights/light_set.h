@@ -35,24 +35,11 @@ public:
   uint32_t hidden_from(uint32_t light) const { return switches_[light] & ~kNoShadow; }
   bool no_shadow(uint32_t light) const { return switches_[light] & kNoShadow; }
 
-  struct Choice {
-    uint32_t light = 0, face = 0; // face: of an emitter
-    double probability = 0.0;     // 0: no light can contribute
-  };
-  // Chooses a light, and a face of an emitter, by the possible contribution at the point. u in [0, 1); the set must not be
-  // empty.
-  Choice choose(const Geometry &geometry, const LightQuery &query, double u) const;
-  // choose() in two steps, because kernels do the first step: choose in the binary tree, then use the rest of u to choose
-  // within the light that the first step returned.
+  // The choice of a light is one in the binary tree, then one within the light that this step returns.
   const BinaryLightTree &binary_tree() const { return binary_tree_; }
   // In the binary tree, the light number size() represents all lights of wide_tree().
   const LightTree &wide_tree() const { return wide_tree_; }
-  Choice choose_within(const Geometry &geometry, const LightQuery &query, LightChoice light) const;
-  // Whether the first step has already chosen a single light.
-  bool decided(uint32_t few_number) const {
-    return few_number < lights_.size() || (few_number >= lights_.size() + emitters_.size() && few_number < size());
-  }
-  // Return the probability with which choose() returns this light, or this face of an emitter.
+  // Return the probability with which the choice returns this light, or this face of an emitter.
   double probability(const LightQuery &query, uint32_t light) const;
   double probability(const Geometry &geometry, const LightQuery &query, const Emitter &emitter, uint32_t face) const;
 

@@ -2,7 +2,7 @@
 #include "lights/light_tree.h"
 
 #include "lights/light_importance.h"
-#include "lights/light_kernel.h"
+#include "lights/tree_kernel.h"
 
 #include <glm/glm.hpp>
 
@@ -34,7 +34,7 @@ double BinaryLightTree::probability(const LightQuery &query, uint32_t number) co
   return place == kNone ? 0.0 : choice_probability(width_one(query), nodes(), place);
 }
 
-const LightKernel &light_kernel() { return LANCER_CHOSEN_KERNEL(light_kernel); }
+const TreeKernel &tree_kernel() { return LANCER_CHOSEN_KERNEL(tree_kernel); }
 
 LightWalk LightTree::walk(const LightQuery &query, double u) {
   const LightQueryLanes<float> asked(Vector3<double>(query.p), Vector3<float>(query.n), query.transmits);

@@ -4,7 +4,7 @@
 
 #include "lights/light_bounds.h"
 #include "lights/light_choice.h"
-#include "lights/light_kernel.h"
+#include "lights/tree_kernel.h"
 #include "simd/parallel.h"
 
 #include <span>
@@ -101,7 +101,7 @@ private:
   static void set(const Child &child, uint32_t i, const std::vector<DescribedLight> &lights, LightBranch &branch,
                   LightAim &aim);
 
-  const LightKernel *kernel_ = nullptr;
+  const TreeKernel *kernel_ = nullptr;
   std::vector<LightBranch> branches_;
   std::vector<LightAim> aims_; // of each branch; empty where no light is aimed
   std::vector<uint32_t> slot_of_;

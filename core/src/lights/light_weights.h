@@ -3,7 +3,7 @@
 #pragma once
 
 #include "lights/light_importance.h"
-#include "lights/light_kernel.h"
+#include "lights/tree_kernel.h"
 #include "simd/kernel_lanes.h"
 
 namespace lancer {

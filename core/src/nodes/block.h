@@ -2,6 +2,7 @@
 #pragma once
 
 #include "nodes/light_path.h"
+#include "simd/block.h"
 
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -22,8 +23,6 @@ struct NodeScene {
   const Camera *camera = nullptr;               // null: CAMERA and WINDOW use the world's frame
 };
 
-inline constexpr int kNodeLanes = 16;
-
 // The inputs of nodes in lanes. The caller sets the used lanes of every array that the kind of place needs; other lanes are not
 // read as input.
 //
@@ -35,16 +34,16 @@ struct alignas(64) NodeBlock {
   bool surface = true;
   uint32_t used = 0, backfacing = 0; // bits of lanes
 
-  alignas(64) uint32_t instance[kNodeLanes], primitive[kNodeLanes];
-  double bary[2][kNodeLanes]; // weights of vertices 1 and 2; 0 on exact surfaces
-  double p[3][kNodeLanes];    // normalised world
-  float ns[3][kNodeLanes], ng[3][kNodeLanes], wo[3][kNodeLanes];
-  float footprint[kNodeLanes];       // radius of the pixel's footprint, normalised units; 0: no bumps
-  const glm::dvec3 *eye[kNodeLanes]; // origin of a camera ray; null: any other ray
+  alignas(64) uint32_t instance[kBlockLanes], primitive[kBlockLanes];
+  double bary[2][kBlockLanes]; // weights of vertices 1 and 2; 0 on exact surfaces
+  double p[3][kBlockLanes];    // normalised world
+  float ns[3][kBlockLanes], ng[3][kBlockLanes], wo[3][kBlockLanes];
+  float footprint[kBlockLanes];       // radius of the pixel's footprint, normalised units; 0: no bumps
+  const glm::dvec3 *eye[kBlockLanes]; // origin of a camera ray; null: any other ray
   // As in LightPath.
-  uint32_t kinds[kNodeLanes];
-  float length[kNodeLanes], depth[kNodeLanes], diffuse[kNodeLanes], glossy[kNodeLanes], transmission[kNodeLanes],
-      transparent[kNodeLanes], portal[kNodeLanes];
+  uint32_t kinds[kBlockLanes];
+  float length[kBlockLanes], depth[kBlockLanes], diffuse[kBlockLanes], glossy[kBlockLanes], transmission[kBlockLanes],
+      transparent[kBlockLanes], portal[kBlockLanes];
 };
 
 inline void put(const LightPath<float> &path, NodeBlock &block, uint32_t lane) {
@@ -60,7 +59,7 @@ inline void put(const LightPath<float> &path, NodeBlock &block, uint32_t lane) {
 
 // Results of one node: x, y, z or RGB, and alpha.
 struct alignas(64) NodeLanes {
-  float of[4][kNodeLanes];
+  float of[4][kBlockLanes];
 };
 
 } // namespace lancer

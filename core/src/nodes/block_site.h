@@ -12,10 +12,10 @@ namespace {
 template <class F> Site<F> site_of(const NodeBlock &block, int first) {
   constexpr int width = Site<F>::kWidth;
   using D = DoubleOf<F>;
-  const auto floats = [&](const float(&from)[kNodeLanes]) __attribute__((always_inline)) {
+  const auto floats = [&](const float(&from)[kBlockLanes]) __attribute__((always_inline)) {
     return load_lanes<width>(from + first);
   };
-  const auto doubles = [&](const double(&from)[kNodeLanes]) __attribute__((always_inline)) {
+  const auto doubles = [&](const double(&from)[kBlockLanes]) __attribute__((always_inline)) {
     return load_lanes<width>(from + first);
   };
   Site<F> site;
@@ -51,9 +51,9 @@ template <class F> Site<F> site_of(const NodeBlock &block, int first) {
 
 template <class F> void run_block(const Program &program, const Schedule &schedule, const NodeBlock &block, NodeLanes *values) {
   constexpr int width = Site<F>::kWidth;
-  for (int first = 0; first < kNodeLanes; first += width)
+  for (int first = 0; first < kBlockLanes; first += width)
     if (block.used >> first & ((1u << width) - 1u))
-      run_nodes(program, schedule, site_of<F>(block, first), Values<F>{values->of[0] + first, kNodeLanes});
+      run_nodes(program, schedule, site_of<F>(block, first), Values<F>{values->of[0] + first, kBlockLanes});
 }
 
 } // namespace

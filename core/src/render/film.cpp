@@ -1,6 +1,6 @@
 #include "render/film.h"
 
-#include "sampling/color.h"
+#include "scene/color.h"
 #include "simd/memory.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 
 #include "lancer.h"
 #include "render/pilot_model.h"
-#include "sampling/color.h"
+#include "scene/color.h"
 
 #include <algorithm>
 #include <bit>

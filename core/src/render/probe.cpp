@@ -1,7 +1,7 @@
 #include "render/probe.h"
 
 #include "bsdf/classic_lobes.h"
-#include "integrator/stages/shading.h"
+#include "integrator/stages/light.h"
 #include "scene/error.h"
 
 #include <cmath>
@@ -103,16 +103,31 @@ void probe_light(const Scene &scene, uint32_t light, uint32_t count, const doubl
   check_light(scene, light);
   check_unit(u, size_t(2) * count);
   const double scale = scene.normalisation.scale;
-  Shader shader(scene, nullptr);
-  for (uint32_t i = 0; i < count; ++i) {
-    const glm::dvec3 p = scene.normalisation.to_normalised(dvec3_at(points, i));
-    const LightSample sample = sample_scene_light(scene, light, p, {u[2 * i], u[2 * i + 1]}, shader);
-    samples[i] = {};
-    store(samples[i].wi, sample.wi);
-    samples[i].distance = sample.distance / scale;
-    store(samples[i].radiance, sample.radiance);
-    samples[i].pdf = float(sample.pdf);
-    samples[i].delta = sample.delta;
+  LightStage stage(scene, nullptr);
+  Doubles p[3] = {};
+  VertexNumbers numbers{};
+  for (uint32_t first = 0; first < count; first += kBlockLanes) {
+    const uint32_t lanes = std::min(uint32_t{kBlockLanes}, count - first);
+    for (uint32_t lane = 0; lane < lanes; ++lane) {
+      put(scene.normalisation.to_normalised(dvec3_at(points, first + lane)), p, lane);
+      for (uint32_t k = 0; k < 2; ++k)
+        numbers.of[kVertexLight + k][lane] = u[2 * (first + lane) + k];
+    }
+    stage.sample(light, (1u << lanes) - 1u, p, numbers);
+    const LightSamples &found = stage.samples();
+    for (uint32_t lane = 0; lane < lanes; ++lane) {
+      lancer_light_sample &sample = samples[first + lane];
+      sample = {};
+      if (!(found.pdf[lane] > 0.0))
+        continue;
+      const bool far = found.far >> lane & 1;
+      const double distance = far ? std::numeric_limits<double>::infinity() : found.distance[lane];
+      store(sample.wi, get(found.wi, lane));
+      sample.distance = distance / scale;
+      store(sample.radiance, get(found.radiance, lane));
+      sample.pdf = float(found.pdf[lane]);
+      sample.delta = found.delta[lane];
+    }
   }
 }
 

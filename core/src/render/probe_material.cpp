@@ -1,6 +1,6 @@
 #include "render/probe.h"
 
-#include "integrator/stages/shading.h"
+#include "integrator/stages/shader.h"
 #include "scene/error.h"
 
 #include <cmath>

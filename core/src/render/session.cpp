@@ -1,7 +1,7 @@
 #include "render/session.h"
 
 #include "render/picture_error.h"
-#include "sampling/color.h"
+#include "scene/color.h"
 #include "scene/error.h"
 #include "scene/fill.h"
 #include "scene/memory.h"

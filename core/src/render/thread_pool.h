@@ -50,17 +50,4 @@ private:
   std::vector<std::thread> threads_;
 };
 
-// Sets the processor's float arithmetic to round-to-nearest with subnormals during its lifetime: other code in the same process
-// may have set another mode, which threads inherit.
-class FloatEnvironment {
-public:
-  FloatEnvironment();
-  ~FloatEnvironment();
-  FloatEnvironment(const FloatEnvironment &) = delete;
-  FloatEnvironment &operator=(const FloatEnvironment &) = delete;
-
-private:
-  uint64_t saved_;
-};
-
 } // namespace lancer

@@ -206,4 +206,15 @@ glm::vec3 Camera::to_window(const glm::dvec3 &p) const {
   return glm::vec3(glm::dvec3((place.x - left) / (right - left), (place.y - bottom) / (top - bottom), 0.0));
 }
 
+PixelCone::PixelCone(const Camera &camera) {
+  // Compare the rays through the middle of the picture and through the neighbouring pixels.
+  const glm::dvec2 middle(0.5 * camera.width, 0.5 * camera.height);
+  const Ray here = camera.ray(middle, glm::dvec2(0.0));
+  const Ray right = camera.ray(middle + glm::dvec2(1.0, 0.0), glm::dvec2(0.0));
+  const Ray above = camera.ray(middle + glm::dvec2(0.0, 1.0), glm::dvec2(0.0));
+  const glm::dvec3 d = glm::normalize(here.d);
+  base = 0.5 * (glm::length(right.o - here.o) + glm::length(above.o - here.o));
+  spread = 0.5 * (glm::length(glm::normalize(right.d) - d) + glm::length(glm::normalize(above.d) - d));
+}
+
 } // namespace lancer

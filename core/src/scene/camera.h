@@ -55,6 +55,12 @@ struct Camera {
   glm::vec3 to_window(const glm::dvec3 &p) const;
 };
 
+// Radius of a pixel's footprint: base at distance 0, plus spread per unit of distance; normalised units.
+struct PixelCone {
+  explicit PixelCone(const Camera &camera);
+  double base = 0.0, spread = 0.0;
+};
+
 // Panoramic projections between a place in the whole panorama, 0 ... 1, and a direction. Local frame: -z forwards, y up.
 
 // Returns a unit direction; zero outside the field of view.

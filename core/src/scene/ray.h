@@ -37,14 +37,20 @@ struct Hit {
 
 // A filter of hits. Rejected hits are skipped as if they did not exist: the ray continues within the same traversal, and may
 // hit an exact surface again where it leaves it.
-struct HitFilter {
-  const uint8_t *instances; // by instance: 0 if every hit counts, without a call
+class HitFilter {
+public:
+  // asks: by instance, 0 if every hit counts, without a call.
+  explicit HitFilter(const uint8_t *asks) : instances(asks) {}
   // Returns whether a hit of rays[ray] of the batch counts. Called in any order, possibly more than once, for
   // - closest hit: every hit that is closer, by closer(), than the closest that counts, and some that are not;
   // - any hit: all hits of a ray that is not occluded.
   // The result for a hit may depend on earlier calls only if the caller does not depend on the order of hits.
-  bool (*counts)(void *context, size_t ray, const Hit &hit);
-  void *context;
+  virtual bool counts(size_t ray, const Hit &hit) = 0;
+
+  const uint8_t *instances;
+
+protected:
+  ~HitFilter() = default;
 };
 
 // The work of a traversal for a batch of rays.

@@ -1,7 +1,7 @@
 // Surfaces in lanes, one copy per instruction set: all values that a surface answers, by name.
 #pragma once
 
-#include "compile/ready_lobes.h"
+#include "bsdf/ready_lobe.h"
 #include "scene/lobe_inputs.h"
 #include "simd/kernel_choice.h"
 

@@ -53,13 +53,13 @@ public:
   const char *instruction_set() const override { return kernel.name; }
 
 private:
-  void find(std::span<const Ray> rays, std::span<Hit> hits, const HitFilter *filter) const override {
+  void find(std::span<const Ray> rays, std::span<Hit> hits, HitFilter *filter) const override {
     if (filter)
       kernel.closest_filtered(scene, rays.data(), hits.data(), rays.size(), *filter);
     else
       kernel.closest(scene, rays.data(), hits.data(), rays.size());
   }
-  void find(std::span<const Ray> rays, std::span<uint8_t> occluded, const HitFilter *filter) const override {
+  void find(std::span<const Ray> rays, std::span<uint8_t> occluded, HitFilter *filter) const override {
     if (filter)
       kernel.any_filtered(scene, rays.data(), occluded.data(), rays.size(), *filter);
     else

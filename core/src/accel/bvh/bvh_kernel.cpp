@@ -59,8 +59,8 @@ struct Queue {
 };
 
 template <Question q>
-LANCER_LANE void trace(const BvhScene &scene, const Ray *rays, Hit *hits, uint8_t *occluded, size_t count,
-                       const HitFilter *filter, TraversalCounts *counts) {
+LANCER_LANE void trace(const BvhScene &scene, const Ray *rays, Hit *hits, uint8_t *occluded, size_t count, HitFilter *filter,
+                       TraversalCounts *counts) {
   Slot slots[kSlots];
   Queue queues[kBvhKinds];
   Slot *others[kSlots];
@@ -213,13 +213,11 @@ LANCER_LANE void trace(const BvhScene &scene, const Ray *rays, Hit *hits, uint8_
   trace<Question{.any = true}>(scene, rays, nullptr, occluded, count, nullptr, nullptr);
 }
 
-[[gnu::flatten]] void closest_filtered(const BvhScene &scene, const Ray *rays, Hit *hits, size_t count,
-                                       const HitFilter &filter) {
+[[gnu::flatten]] void closest_filtered(const BvhScene &scene, const Ray *rays, Hit *hits, size_t count, HitFilter &filter) {
   trace<Question{.filtered = true}>(scene, rays, hits, nullptr, count, &filter, nullptr);
 }
 
-[[gnu::flatten]] void any_filtered(const BvhScene &scene, const Ray *rays, uint8_t *occluded, size_t count,
-                                   const HitFilter &filter) {
+[[gnu::flatten]] void any_filtered(const BvhScene &scene, const Ray *rays, uint8_t *occluded, size_t count, HitFilter &filter) {
   trace<Question{.any = true, .filtered = true}>(scene, rays, nullptr, occluded, count, &filter, nullptr);
 }
 

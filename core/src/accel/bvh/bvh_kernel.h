@@ -15,8 +15,8 @@ struct BvhKernel {
   void (*closest)(const BvhScene &scene, const Ray *rays, Hit *hits, size_t count);
   void (*any)(const BvhScene &scene, const Ray *rays, uint8_t *occluded, size_t count);
   // The same queries over the hits that pass a filter.
-  void (*closest_filtered)(const BvhScene &scene, const Ray *rays, Hit *hits, size_t count, const HitFilter &filter);
-  void (*any_filtered)(const BvhScene &scene, const Ray *rays, uint8_t *occluded, size_t count, const HitFilter &filter);
+  void (*closest_filtered)(const BvhScene &scene, const Ray *rays, Hit *hits, size_t count, HitFilter &filter);
+  void (*any_filtered)(const BvhScene &scene, const Ray *rays, uint8_t *occluded, size_t count, HitFilter &filter);
   // Adds the work of either query, with each ray traced alone, to counts.
   void (*count)(const BvhScene &scene, const Ray *rays, size_t count, bool any, TraversalCounts &counts);
 };

@@ -57,7 +57,7 @@ struct Packet {
 struct PacketAsks {
   const Ray *const *rays;
   const uint32_t *number; // in the batch
-  const HitFilter *filter;
+  HitFilter *filter;
 };
 
 // Keeps a closer hit if it passes the filter.
@@ -241,8 +241,7 @@ LANCER_LANE void walk_mesh(const BvhView &bvh, const PacketAsks &asks, uint32_t 
 
 // Traces coherent rays, except for the leftovers. Returns the lanes that have leftovers.
 template <Question q>
-[[gnu::noinline, gnu::flatten]] uint32_t trace_packet(const BvhScene &scene, Entering &e, const HitFilter *filter,
-                                                      Leftovers &l) {
+[[gnu::noinline, gnu::flatten]] uint32_t trace_packet(const BvhScene &scene, Entering &e, HitFilter *filter, Leftovers &l) {
   const PacketAsks asks{e.rays, e.number, filter};
   Packet p;
   p.size = 0;

@@ -21,9 +21,9 @@ struct Question {
 };
 
 // Returns whether the filter rejects a hit.
-template <Question q> LANCER_LANE bool left_out(const HitFilter *filter, size_t number, const Hit &hit) {
+template <Question q> LANCER_LANE bool left_out(HitFilter *filter, size_t number, const Hit &hit) {
   if constexpr (q.filtered)
-    return filter->instances[hit.instance] != 0 && !filter->counts(filter->context, number, hit);
+    return filter->instances[hit.instance] != 0 && !filter->counts(number, hit);
   else
     return false;
 }

@@ -41,7 +41,7 @@ LANCER_LANE void become_mesh_ray(const BvhScene &scene, uint32_t instance, const
 
 // Keeps the first hit on an exact surface that passes the filter, if that hit is closer than the best hit. find(t): moves t to
 // the next hit; returns false if there is none.
-template <Question q, class Find> LANCER_LANE void try_places(uint32_t instance, const HitFilter *filter, Slot &s, Find find) {
+template <Question q, class Find> LANCER_LANE void try_places(uint32_t instance, HitFilter *filter, Slot &s, Find find) {
   double t = s.tmin;
   while (find(t) && closer(t, instance, 0, s.best)) {
     const Hit hit{t, 0.0, 0.0, instance, 0};
@@ -57,13 +57,13 @@ template <Question q, class Find> LANCER_LANE void try_places(uint32_t instance,
 }
 
 template <Question q>
-LANCER_LANE void try_quadric(const PlacedShape &shape, uint32_t instance, const Ray &ray, const HitFilter *filter, Slot &s) {
+LANCER_LANE void try_quadric(const PlacedShape &shape, uint32_t instance, const Ray &ray, HitFilter *filter, Slot &s) {
   if (visible(shape, ray))
     try_places<q>(
         instance, filter, s, [&](double &t) __attribute__((always_inline)) { return next_place(shape, instance, ray, t); });
 }
 
-template <Question q> LANCER_LANE void visit_spheres(const BvhScene &scene, const Ray &ray, const HitFilter *filter, Slot &s) {
+template <Question q> LANCER_LANE void visit_spheres(const BvhScene &scene, const Ray &ray, HitFilter *filter, Slot &s) {
   const SphereBlock &block = *reinterpret_cast<const SphereBlock *>(s.at);
   BlockRoots roots;
   for (uint32_t met = intersect_spheres(block, ray, roots); met != 0; met &= met - 1) {
@@ -83,7 +83,7 @@ template <Question q> LANCER_LANE void visit_spheres(const BvhScene &scene, cons
 }
 
 // Enters an instance, if the ray can hit it.
-template <Question q> LANCER_LANE void enter_instance(const BvhScene &scene, const Ray &ray, const HitFilter *filter, Slot &s) {
+template <Question q> LANCER_LANE void enter_instance(const BvhScene &scene, const Ray &ray, HitFilter *filter, Slot &s) {
   const PlacedShape &shape = *reinterpret_cast<const PlacedShape *>(s.at);
   const uint32_t instance = static_cast<uint32_t>(&shape - scene.shapes);
   if (shape.mesh == kNone)
@@ -111,7 +111,7 @@ LANCER_LANE void leave_instance(const BvhScene &scene, Slot &s) {
     shorten(s);
 }
 
-template <Question q> LANCER_LANE void visit_triangles(const HitFilter *filter, Slot &s) {
+template <Question q> LANCER_LANE void visit_triangles(HitFilter *filter, Slot &s) {
   const TriangleBlock &block = *reinterpret_cast<const TriangleBlock *>(s.at);
   BlockHits<4> hits;
   bool found = false;
@@ -137,7 +137,7 @@ template <Question q> LANCER_LANE void visit_triangles(const HitFilter *filter, 
 }
 
 // Tests a block of the world's tree, whose triangles are in the space of their instance.
-template <Question q> LANCER_LANE void visit_placed(const BvhScene &scene, const Ray &ray, const HitFilter *filter, Slot &s) {
+template <Question q> LANCER_LANE void visit_placed(const BvhScene &scene, const Ray &ray, HitFilter *filter, Slot &s) {
   const uint32_t instance = scene.block_instance[reinterpret_cast<const TriangleBlock *>(s.at) - scene.blocks];
   if (instance != s.instance)
     become_mesh_ray(scene, instance, ray, s);
@@ -146,8 +146,7 @@ template <Question q> LANCER_LANE void visit_placed(const BvhScene &scene, const
 }
 
 // Tests the unbounded instances, up to the next mesh.
-template <Question q>
-LANCER_LANE void visit_unbounded(const BvhScene &scene, const Ray &ray, const HitFilter *filter, Slot &s) {
+template <Question q> LANCER_LANE void visit_unbounded(const BvhScene &scene, const Ray &ray, HitFilter *filter, Slot &s) {
   while (s.unbounded > 0 && !(q.any && s.best.instance != kNone)) {
     const uint32_t instance = scene.unbounded[--s.unbounded];
     if (scene.shapes[instance].mesh == kNone) {

@@ -6,6 +6,16 @@ namespace lancer {
 
 namespace {
 
+// A filter that calls a function of (ray, hit).
+template <class Counts> class FilterBy final : public HitFilter {
+public:
+  FilterBy(const std::vector<uint8_t> &asks, const Counts &counts) : HitFilter(asks.data()), counts_(counts) {}
+  bool counts(size_t ray, const Hit &hit) override { return counts_(ray, hit); }
+
+private:
+  const Counts &counts_;
+};
+
 class CoplanarAccelerator final : public Accelerator {
 public:
   CoplanarAccelerator(std::unique_ptr<Accelerator> a, PlaneRule r, size_t instances)
@@ -18,12 +28,11 @@ public:
 private:
   // A query with its filter.
   struct Asked {
-    const CoplanarAccelerator &self;
     std::span<const Ray> rays;
-    const HitFilter *filter;
+    HitFilter *filter;
 
     bool counts(size_t ray, const Hit &hit) const {
-      return !filter || !filter->instances[hit.instance] || filter->counts(filter->context, ray, hit);
+      return !filter || !filter->instances[hit.instance] || filter->counts(ray, hit);
     }
   };
 
@@ -54,8 +63,8 @@ private:
     std::vector<End> all;
   };
 
-  void find(std::span<const Ray> rays, std::span<Hit> hits, const HitFilter *filter) const override {
-    const Asked asked{*this, rays, filter};
+  void find(std::span<const Ray> rays, std::span<Hit> hits, HitFilter *filter) const override {
+    const Asked asked{rays, filter};
     Searches searches{asked, {}, {}};
     if (filter) {
       trace(asked, hits);
@@ -80,8 +89,8 @@ private:
     settle(searches);
   }
 
-  void find(std::span<const Ray> rays, std::span<uint8_t> occluded, const HitFilter *filter) const override {
-    const Asked asked{*this, rays, filter};
+  void find(std::span<const Ray> rays, std::span<uint8_t> occluded, HitFilter *filter) const override {
+    const Asked asked{rays, filter};
     if (filter) {
       trace(asked, occluded);
     } else {
@@ -106,35 +115,28 @@ private:
     for (const size_t i : which)
       some.push_back(rays[i]);
     std::vector<Answer> found(some.size());
-    trace({*this, some, nullptr}, std::span<Answer>(found));
+    trace({some, nullptr}, std::span<Answer>(found));
     for (size_t i = 0; i < which.size(); ++i)
       answers[which[i]] = found[i];
   }
 
   void trace(Asked asked, std::span<Hit> hits) const {
     const std::vector<uint8_t> instances = instances_asked(asked.filter);
-    inner->closest_hit(asked.rays, hits,
-                       {instances.data(),
-                        [](void *context, size_t ray, const Hit &hit) {
-                          const Asked &a = *static_cast<const Asked *>(context);
-                          return !(a.self.rule.flagged(hit) && a.self.rule.starts_in_plane(a.rays[ray], hit)) &&
-                                 a.counts(ray, hit);
-                        },
-                        &asked});
+    const auto counts = [&](size_t ray, const Hit &hit) {
+      return !(rule.flagged(hit) && rule.starts_in_plane(asked.rays[ray], hit)) && asked.counts(ray, hit);
+    };
+    FilterBy filter(instances, counts);
+    inner->closest_hit(asked.rays, hits, filter);
   }
 
   void trace(Asked asked, std::span<uint8_t> occluded) const {
     const std::vector<uint8_t> instances = instances_asked(asked.filter);
-    inner->any_hit(asked.rays, occluded,
-                   {instances.data(),
-                    [](void *context, size_t ray, const Hit &hit) {
-                      const Asked &a = *static_cast<const Asked *>(context);
-                      return a.self.stops(a, ray, hit);
-                    },
-                    &asked});
+    const auto counts = [&](size_t ray, const Hit &hit) { return stops(asked, ray, hit); };
+    FilterBy filter(instances, counts);
+    inner->any_hit(asked.rays, occluded, filter);
   }
 
-  std::vector<uint8_t> instances_asked(const HitFilter *filter) const {
+  std::vector<uint8_t> instances_asked(HitFilter *filter) const {
     std::vector<uint8_t> instances = rule.instances();
     for (size_t i = 0; filter && i < instances.size(); ++i)
       instances[i] |= filter->instances[i];
@@ -150,7 +152,7 @@ private:
     // A transparent face has no effect where a face of higher priority covers it.
     if (asked.filter && asked.filter->instances[hit.instance]) {
       Hit there = hit;
-      const Asked all{*this, asked.rays, nullptr};
+      const Asked all{asked.rays, nullptr};
       Searches searches{all, {}, {}};
       search(ray, there, searches);
       settle(searches);
@@ -178,14 +180,12 @@ private:
     if (looks.all.empty())
       return;
     std::vector<uint8_t> nothing(looks.all.size());
-    inner->any_hit(looks.rays, nothing,
-                   {everything.data(),
-                    [](void *context, size_t i, const Hit &hit) {
-                      Looks &l = *static_cast<Looks *>(context);
-                      l.asked.self.look_at(l.asked, hit, l.all[i]);
-                      return false;
-                    },
-                    &looks});
+    const auto counts = [&](size_t i, const Hit &hit) {
+      look_at(looks.asked, hit, looks.all[i]);
+      return false;
+    };
+    FilterBy filter(everything, counts);
+    inner->any_hit(looks.rays, nothing, filter);
   }
 
   void settle(Searches &searches) const {

@@ -37,11 +37,11 @@ public:
   const char *instruction_set() const override { return "baseline"; }
 
 private:
-  void find(std::span<const Ray> rays, std::span<Hit> hits, const HitFilter *filter) const override {
+  void find(std::span<const Ray> rays, std::span<Hit> hits, HitFilter *filter) const override {
     for (size_t i = 0; i < rays.size(); ++i)
       hits[i] = intersect<false>(rays[i], {filter, i});
   }
-  void find(std::span<const Ray> rays, std::span<uint8_t> occluded, const HitFilter *filter) const override {
+  void find(std::span<const Ray> rays, std::span<uint8_t> occluded, HitFilter *filter) const override {
     for (size_t i = 0; i < rays.size(); ++i)
       occluded[i] = intersect<true>(rays[i], {filter, i}).valid();
   }

@@ -1,7 +1,7 @@
 #include "integrator/aov/first_surface.h"
 
-#include "sampling/color.h"
 #include "sampling/elementary.h"
+#include "scene/color.h"
 #include "simd/rounding.h"
 
 #include <algorithm>
@@ -10,11 +10,11 @@
 
 namespace lancer {
 
-void record_place(const Scene &scene, const Surface &surface, const Material *material, double t, SampleResult &result) {
+void record_place(const Scene &scene, const Surface &surface, const Material &material, double t, SampleResult &result) {
   result.depth = nearest_float(t / scene.normalisation.scale);
   result.position = nearest_float(scene.normalisation.to_world(surface.p));
   result.object_index = float(scene.geometry.instances[surface.instance].object_index);
-  result.material_index = material ? float(material->index) : 0.0f;
+  result.material_index = float(material.index);
 }
 
 void forget_place(SampleResult &result) {
@@ -41,7 +41,7 @@ void record_seen(const Scene &scene, const Camera &camera, const IntegratorSetti
   if (passes.mist())
     result.mist += (1.0f - mist_at(scene, camera, settings, surface)) * mean(weight * stage.opacity(lane));
   for (uint32_t component = 0; component < 3 && passes.components(); ++component)
-    result.light[kLightComponents + 3 * component + 2] += weight * get(stage.block.shown[component], lane);
+    result.light[kLightComponents + 3 * component + 2] += weight * get(stage.means().shown[component], lane);
 }
 
 float mist_at(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const Surface &surface) {

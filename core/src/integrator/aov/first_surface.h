@@ -4,15 +4,14 @@
 #include "integrator/sample.h"
 #include "integrator/stages/light_passes.h"
 #include "integrator/stages/lobe_means.h"
-#include "integrator/stages/shading.h"
-#include "integrator/stages/surface_stage.h"
+#include "integrator/stages/surface.h"
 
 namespace lancer {
 
 // Passes of the surfaces that the camera sees.
 
 // Records the hit of the camera ray: depth, position and indices. t: of the camera ray.
-void record_place(const Scene &scene, const Surface &surface, const Material *material, double t, SampleResult &result);
+void record_place(const Scene &scene, const Surface &surface, const Material &material, double t, SampleResult &result);
 // Resets the record to that of a ray that hits nothing.
 void forget_place(SampleResult &result);
 // Records the other passes of the first surface. normal: the mean of the lobes' normals.

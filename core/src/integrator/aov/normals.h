@@ -3,10 +3,10 @@
 
 #include "integrator/aov/first_surface.h"
 #include "integrator/sample.h"
-#include "integrator/stages/camera_rays.h"
+#include "integrator/stages/camera.h"
 #include "integrator/stages/light_passes.h"
 #include "integrator/stages/shading_queues.h"
-#include "integrator/stages/surface_stage.h"
+#include "integrator/stages/surface.h"
 
 #include <algorithm>
 
@@ -15,8 +15,8 @@ namespace lancer {
 class NormalsIntegrator final : public Integrator {
 public:
   NormalsIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
-      : scene_(scene), camera_(camera), settings_(settings), generator_(camera, settings), shader_(scene, &camera),
-        surfaces_(scene, camera, settings), queues_(scene), passes_(settings) {}
+      : scene_(scene), camera_(camera), settings_(settings), generator_(camera, settings), surfaces_(scene, camera, settings),
+        queues_(scene), passes_(settings), sky_values_(scene.world.program.nodes.size()) {}
 
   void run(std::span<const SampleAddress> addresses, std::span<SampleResult> results, std::vector<PathVertex> *trace) override {
     rays_.clear();
@@ -51,7 +51,7 @@ private:
     if (settings_.film_transparent)
       result.alpha = 0.0f;
     else if (!(scene_.world.hidden_from & LANCER_RAY_CAMERA))
-      result.radiance = scene_.lights.environment().radiance(glm::normalize(ray.d), shader_.values(), &camera_, &ray.o,
+      result.radiance = scene_.lights.environment().radiance(glm::normalize(ray.d), sky_values_, &camera_, &ray.o,
                                                              {.kinds = LANCER_RAY_CAMERA});
     add_sky_guides(begin_guides(settings_, passes_.features()), result);
   }
@@ -60,15 +60,11 @@ private:
     if (surfaces_.count() == 0)
       return;
     surfaces_.find();
-    if (surfaces_.has_nodes()) {
-      View views[kBlockLanes];
-      for (uint32_t lane = 0; lane < surfaces_.count(); ++lane)
-        views[lane] = {.wo = get(surfaces_.block.wo, lane), .path = {.kinds = LANCER_RAY_CAMERA}};
-      surfaces_.ask_nodes(views);
-    }
-    surfaces_.find_lobes();
+    surfaces_.ask_nodes(
+        [&](uint32_t lane) { return View{.wo = get(surfaces_.surfaces().wo, lane), .path = {.kinds = LANCER_RAY_CAMERA}}; });
+    surfaces_.build_lobes();
     // This picture shows every surface as opaque.
-    std::fill_n(surfaces_.transmittance, surfaces_.count(), glm::vec3(0.0f));
+    surfaces_.make_opaque();
     surfaces_.describe();
     for (uint32_t lane = 0; lane < surfaces_.count(); ++lane)
       show(lane, results[slots_[number_[lane]]], trace);
@@ -78,13 +74,13 @@ private:
   void show(uint32_t lane, SampleResult &result, std::vector<PathVertex> *trace) {
     const Surface surface = surfaces_.surface(lane);
     const double t = surfaces_.hit(lane).t;
-    record_place(scene_, surface, surfaces_.block.material[lane], t, result);
-    record_first_surface(scene_, settings_, surface, get(surfaces_.block.normal, lane), result);
+    record_place(scene_, surface, surfaces_.material(lane), t, result);
+    record_first_surface(scene_, settings_, surface, get(surfaces_.means().normal, lane), result);
     record_seen(scene_, camera_, settings_, passes_, surface, surfaces_, lane, glm::vec3(1.0f), result);
     DenoisingGuides guides = begin_guides(settings_, passes_.features());
     if (guides.open)
-      add_denoising_guides(scene_, camera_, surfaces_.mixture(lane), get(surfaces_.block.wo, lane), glm::vec3(0.0f),
-                           t * surfaces_.block.length[lane], guides, result);
+      add_denoising_guides(scene_, camera_, surfaces_.mixture(lane), get(surfaces_.surfaces().wo, lane), glm::vec3(0.0f),
+                           surfaces_.distance(lane), guides, result);
     result.radiance = 0.5f * surface.ns + 0.5f;
     if (trace)
       trace->push_back({scene_.normalisation.to_world(surface.p), t / scene_.normalisation.scale, surface.ns, glm::vec3(1.0f),
@@ -94,13 +90,13 @@ private:
   const Scene &scene_;
   const Camera &camera_;
   IntegratorSettings settings_;
-  RayGenerator generator_;
-  Shader shader_;
+  CameraStage generator_;
   SurfaceStage surfaces_;
   ShadingQueues queues_;
   LightPasses passes_;
-  uint32_t number_[kBlockLanes]; // number of the ray of each lane of the block
-  std::vector<uint32_t> slots_;  // rays_[i] belongs to results[slots_[i]]
+  std::vector<glm::vec4> sky_values_; // of the world's nodes
+  uint32_t number_[kBlockLanes];      // number of the ray of each lane of the block
+  std::vector<uint32_t> slots_;       // rays_[i] belongs to results[slots_[i]]
   std::vector<Ray> rays_;
   std::vector<Hit> hits_;
 };

@@ -1,8 +1,7 @@
-
 #include "integrator/classic/classic.h"
 
 #include "compile/mesh_normals.h"
-#include "sampling/color.h"
+#include "scene/color.h"
 #include "scene/hit_surface.h"
 
 #include <algorithm>
@@ -38,10 +37,10 @@ glm::vec3 ambient_light(const Scene &scene, const Camera &camera) {
 } // namespace
 
 ClassicIntegrator::ClassicIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
-    : scene_(scene), camera_(camera), settings_(settings), generator_(camera, settings), shader_(scene, &camera),
+    : scene_(scene), camera_(camera), settings_(settings), generator_(camera, settings), light_(scene, &camera),
       shadows_(scene, camera, settings), passes_(settings), queues_(scene), surfaces_(scene, camera, settings),
-      block_(surfaces_.block), kernel_(classic_kernel()), ambient_(ambient_light(scene, camera)),
-      only_combined_(settings.passes == 1u << LANCER_PASS_COMBINED) {}
+      kernel_(classic_kernel()), ambient_(ambient_light(scene, camera)),
+      only_combined_(settings.passes == 1u << LANCER_PASS_COMBINED), sky_values_(scene.world.program.nodes.size()) {}
 
 void ClassicIntegrator::run(std::span<const SampleAddress> addresses, std::span<SampleResult> results,
                             std::vector<PathVertex> *trace) {
@@ -114,7 +113,7 @@ void ClassicIntegrator::miss(const Branch &branch, const glm::dvec3 &eye, const 
   }
   if (!(branch.kinds & ~scene_.world.hidden_from))
     return;
-  const glm::vec3 sky = scene_.lights.environment().radiance(glm::dvec3(direction), shader_.values(), &camera_,
+  const glm::vec3 sky = scene_.lights.environment().radiance(glm::dvec3(direction), sky_values_, &camera_,
                                                              branch.depth == 0 ? &eye : nullptr, {.kinds = branch.kinds});
   add(branch, branch.weight * sky, true, result);
 }

@@ -4,12 +4,11 @@
 #include "compile/scene.h"
 #include "integrator/aov/first_surface.h"
 #include "integrator/classic/classic_kernel.h"
-#include "integrator/stages/camera_rays.h"
+#include "integrator/stages/camera.h"
 #include "integrator/stages/light_passes.h"
-#include "integrator/stages/shading.h"
 #include "integrator/stages/shading_queues.h"
 #include "integrator/stages/shadow.h"
-#include "integrator/stages/surface_stage.h"
+#include "integrator/stages/surface.h"
 #include "scene/surface.h"
 
 #include <cstdint>
@@ -107,15 +106,16 @@ private:
   void shade(std::span<SampleResult> results);
   void put_in_lane(size_t number, const Material &material, std::span<SampleResult> results);
   void shade_block(std::span<SampleResult> results);
-  void ask_nodes();
   void cut_holes(std::span<SampleResult> results);
   void record(std::span<SampleResult> results);
   void keep(uint32_t lane);
-  bool ask(uint32_t number, const VertexBlock &met);
+  void sample(uint32_t number, const Doubles (&p)[3], const Floats (&ng)[3]);
+  void illuminate(uint32_t number);
+  glm::vec3 own_light(uint32_t number, uint32_t lane, float share) const;
   void light_block();
   void light_corners();
   void move_to_corner(uint32_t corner);
-  void send_shadow(uint32_t number, uint32_t lane);
+  void send_shadow(uint32_t number, uint32_t lane, const glm::vec3 &light);
   void leave(size_t number, SampleResult &result, std::vector<PathVertex> *trace);
   void keep_vertex(size_t number, const SampleResult &result, std::vector<PathVertex> &trace) const;
   void miss(const Branch &branch, const glm::dvec3 &eye, const glm::vec3 &direction, SampleResult &result);
@@ -131,14 +131,17 @@ private:
   const Scene &scene_;
   const Camera &camera_;
   IntegratorSettings settings_;
-  RayGenerator generator_;
-  Shader shader_;
-  ShadowQueue shadows_;
+  CameraStage generator_;
+  LightStage light_;
+  ShadowStage shadows_;
   LightPasses passes_;
   ShadingQueues queues_;
   SurfaceStage surfaces_;
-  VertexBlock &block_;
   const ClassicKernel &kernel_;
+  VertexNumbers numbers_{};
+  BranchBlock branched_{};
+  LitBlock lit_block_{};
+  IrradianceBlock irradiance_{};
   glm::vec3 ambient_;    // ambient light for Ka
   bool only_combined_;   // no other pass is requested
   bool corners_ = false; // the block's vertices are lit at the corners of their triangles
@@ -151,6 +154,7 @@ private:
     glm::vec3 light{0.0f}, own{0.0f};
   };
   std::vector<CornerLight> corner_light_;
+  std::vector<glm::vec4> sky_values_;   // of the world's nodes
   LightByRay own_light_, shadow_light_; // of lamps without occlusion, by Ka; of shadow rays
   std::vector<Sampler> samplers_;       // per slot
   std::vector<Branch> branches_, next_branches_;

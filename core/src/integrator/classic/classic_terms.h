@@ -5,8 +5,8 @@
 #include "bsdf/bsdf.h"
 #include "lancer.h"
 #include "lights/light_lanes.h"
-#include "sampling/color.h"
 #include "sampling/elementary.h"
+#include "scene/color.h"
 
 #include <limits>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "integrator/sample.h"
-#include "sampling/color.h"
+#include "scene/color.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,129 +1,295 @@
 #include "integrator/path/path.h"
 
-#include "integrator/stages/lane_access.h"
-#include "sampling/color.h"
+#include "lancer.h"
+#include "scene/color.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace lancer {
 
-namespace {
-
-// Roulette starts after the bounces that carry most of the light.
-constexpr uint32_t kRouletteAfter = 2;
-
-} // namespace
-
 void PathIntegrator::run(std::span<const SampleAddress> addresses, std::span<SampleResult> results,
                          std::vector<PathVertex> *trace) {
-  trace_ = trace;
   // Start one path per sample.
-  generate(addresses, results);
+  film_.begin(addresses, results, trace);
+  start(addresses, results);
   const auto gathered = [&](uint32_t slot) { return film_.gathered(slot); };
-  for (uint32_t turn = 0; !paths_.empty() && !settings_.cancelled(); ++turn) {
+  for (uint32_t turn = 0; !queue_.paths.empty() && !settings_.cancelled(); ++turn) {
     // Find the next hit of every path.
     find_hits();
-    // Add emission, sample a light, sample the next direction of each path.
+    // Add the light that rays run into, light the hits, and sample the next direction of each path.
     shade();
+    // Keep the light before the last bounces, from which the light beyond them is estimated.
     if (last_bounces_.due(turn))
       last_bounces_.note(
-          turn, paths_.size(), settings_.splits.paths > 1, [&](size_t i) { return paths_[i].slot; }, gathered);
-    // Add the light of the samples that are not occluded.
+          turn, queue_.paths.size(), settings_.splits.paths > 1, [&](size_t i) { return queue_.paths[i].slot; }, gathered);
+    // Add the light samples that no surface occludes.
     counts_.shadow +=
-        shadows_.trace([&](const WaitingLight &waiting, const glm::vec3 &light) { film_.add_lit(waiting, light); });
-    counts_.bounce += next_rays_.size();
-    paths_.swap(next_paths_);
-    rays_.swap(next_rays_);
+        shadow_.trace([&](const WaitingLight &waiting, const glm::vec3 &light) { film_.add_lit(waiting, light); });
+    counts_.bounce += next_.rays.size();
+    std::swap(queue_, next_);
   }
   last_bounces_.end(gathered, film_.energy);
   film_.end();
   energy_ = film_.energy;
 }
 
-void PathIntegrator::generate(std::span<const SampleAddress> addresses, std::span<SampleResult> results) {
-  paths_.clear();
-  rays_.clear();
-  film_.begin(addresses, results);
+void PathIntegrator::start(std::span<const SampleAddress> addresses, std::span<SampleResult> results) {
+  queue_.clear();
   last_bounces_.begin();
-  generator_.start(addresses, passes_.wanted(), results, [&](uint32_t slot, const Sampler &sampler) -> Ray & {
-    paths_.emplace_back(sampler, slot);
-    return rays_.emplace_back();
+  camera_.start(addresses, film_.passes.wanted(), results, [&](uint32_t slot, const Sampler &sampler) -> Ray & {
+    queue_.paths.emplace_back(sampler, slot);
+    return queue_.rays.emplace_back();
   });
-  for (size_t i = 0; i < paths_.size(); ++i)
-    paths_[i].from = rays_[i].o;
-  counts_.camera += paths_.size();
+  queue_.from.resize(queue_.rays.size());
+  for (size_t i = 0; i < queue_.rays.size(); ++i)
+    queue_.from[i].p = queue_.rays[i].o;
+  counts_.camera += queue_.paths.size();
+}
+
+void PathIntegrator::find_hits() {
+  // Let rays pass absent surfaces, up to the limit of each path.
+  left_.clear();
+  for (size_t i = 0; i < queue_.paths.size() && hit_.passes(); ++i)
+    left_.push_back(queue_.paths[i].crossings_left(settings_.transparent_bounces));
+  hit_.find(queue_.rays, left_, hits_);
+  for (size_t i = 0; i < left_.size(); ++i)
+    if (hit_.passed(i, hits_[i]) > 0)
+      film_.pass_absent(queue_.paths[i], queue_.rays[i], hit_, i, hits_[i]);
 }
 
 void PathIntegrator::shade() {
-  next_paths_.clear();
-  next_rays_.clear();
-  add_lights_met();
-  if (passes_.occlusion())
-    count_occluded();
+  next_.clear();
+  // Add lamps and the sky.
+  add_lamps();
+  film_.count_occluded(queue_.paths, queue_.rays, hits_, occlusion_);
+  missed_.clear();
   queues_.begin();
-  for (size_t i = 0; i < paths_.size(); ++i)
+  for (size_t i = 0; i < queue_.paths.size(); ++i)
     if (hits_[i].valid())
       queues_.add(i, hits_[i]);
-    else
-      miss(i);
-  add_missed();
+    else if (film_.miss(queue_.paths[i]) && queue_.paths[i].shows_light(scene_.world.hidden_from))
+      missed_.push_back(i);
+  add_sky();
+  // Shade the hits in blocks, one class of materials after the other.
   vertices_.wide += queues_.size();
   queues_.each([&](std::span<const ShadingQueues::Met> met) {
     for (size_t i = 0; i < met.size(); ++i) {
       if (i + 1 < met.size())
         textures_.ahead(hits_[met[i + 1].number]);
       put_in_lane(met[i].number, *met[i].material);
-      if (surfaces_.full())
+      if (surface_.full())
         shade_block();
     }
     shade_block();
   });
 }
 
-// Returns the view of a path's hit at t.
-View PathIntegrator::view_of(const Path &path, const Ray &ray, double t) const {
-  const double unit = glm::length(ray.d), way = path.length + t * unit;
-  return {.wo = glm::vec3(-glm::normalize(ray.d)),
-          .footprint = float(cone_.base + way * cone_.spread),
-          .path = path.light_path((t - ray.tmin) * unit / scene_.normalisation.scale)};
+// Adds the lamps on the way of each ray, with the weight of multiple importance sampling.
+void PathIntegrator::add_lamps() {
+  for (const MetLight &met : met_.find(queue_.rays, hits_, queue_.from)) {
+    const Path &path = queue_.paths[met.ray];
+    if (path.shows_light(scene_.lights.hidden_from(met.light)))
+      film_.add(path, path.beta * met.radiance * met.weight, false);
+  }
 }
 
-void PathIntegrator::keep_vertex(const Path &path, const Surface &surface, double t) {
-  trace_->push_back({scene_.normalisation.to_world(surface.p), t / scene_.normalisation.scale, surface.ns, path.beta,
-                     film_.gathered(path), surface.instance, surface.primitive, surface.material, path.scatterings});
+// Adds the environment that paths see behind all surfaces.
+void PathIntegrator::add_sky() {
+  const Environment &environment = scene_.lights.environment();
+  for (size_t i = 0; i < missed_.size() && !environment.varies(); ++i)
+    film_.add(queue_.paths[missed_[i]], queue_.paths[missed_[i]].beta * environment.constant(), true);
+  for (size_t first = 0; first < missed_.size() && environment.varies(); first += kBlockLanes) {
+    const auto now = std::span(missed_).subspan(first, std::min<size_t>(kBlockLanes, missed_.size() - first));
+    for (uint32_t lane = 0; lane < now.size(); ++lane) {
+      const Path &path = queue_.paths[now[lane]];
+      met_.add_miss(lane, queue_.rays[now[lane]].d, path.light_path(0.0),
+                    path.kinds == LANCER_RAY_CAMERA ? &queue_.from[now[lane]].p : nullptr);
+    }
+    met_.look_at_sky(uint32_t(now.size()));
+    for (uint32_t lane = 0; lane < now.size(); ++lane) {
+      const Path &path = queue_.paths[now[lane]];
+      film_.add(path, path.beta * met_.sky_radiance(lane) * met_.sky_weight(lane, queue_.from[now[lane]]), true);
+    }
+  }
+}
+
+void PathIntegrator::put_in_lane(size_t number, const Material &material) {
+  const Path &path = queue_.paths[number];
+  const Hit &hit = hits_[number];
+  const bool ends = path.last || path.scatterings > settings_.max_bounces;
+  if (ends && film_.only_combined() && !material.emits() && !material.transmits() &&
+      !scene_.geometry.instances[hit.instance].holdout)
+    return;
+  const uint32_t lane = surface_.add(queue_.rays[number], hit, material, ends);
+  number_[lane] = number;
+  leader_[lane] = 0;
+  ends_ |= uint32_t{ends} << lane;
+  put(path.beta, beta_, lane);
+  numbers_.set(lane, path.sampler, path.vertex_dimension());
+}
+
+void PathIntegrator::shade_block() {
+  const uint32_t count = surface_.count();
+  if (count == 0)
+    return;
+  // Find the surfaces and what their nodes say there, cut holes, and build the lobes.
+  surface_.find();
+  surface_.ask_nodes([&](uint32_t lane) {
+    const Path &path = path_of(lane);
+    const double unit = surface_.surfaces().length[lane], t = surface_.hit(lane).t;
+    return surface_.view(lane, path.length + t * unit,
+                         path.light_path((t - surface_.ray(lane).tmin) * unit / scene_.normalisation.scale));
+  });
+  cut_holes();
+  surface_.build_lobes();
+  // Fill the passes, and add the light that the surfaces emit.
+  occlusion_asked_ = film_.record(surface_, queue_.paths, number_, ends_, nothing_);
+  for (uint32_t lane = 0; lane < count; ++lane)
+    if (!(nothing_ >> lane & 1))
+      add_emission(lane);
+  // Sample lights and next rays.
+  split();
+  if (!splitting_)
+    numbers_.draw(kLightNumbers | kPathNumbers, count);
+  light();
+  go_on();
+  ends_ = 0;
+  surface_.clear();
+}
+
+// Cuts holdouts out of the camera's view.
+void PathIntegrator::cut_holes() {
+  uint32_t seen = 0;
+  for (uint32_t lane = 0; lane < surface_.count(); ++lane)
+    seen |= uint32_t{path_of(lane).in_view} << lane;
+  const SurfaceStage::Holes holes = surface_.cut_holes(seen);
+  each_lane(holes.cut, [&](uint32_t lane) { film_.cut(path_of(lane), surface_.cut_alpha(lane, path_of(lane).beta)); });
+  nothing_ = holes.nothing;
+}
+
+// Adds the light that a surface emits, weighted against light samples, and its denoising guides.
+void PathIntegrator::add_emission(uint32_t lane) {
+  const Path &path = path_of(lane);
+  const glm::vec3 emission = surface_.emission(lane);
+  if (emission != glm::vec3(0.0f))
+    film_.add(path, path.beta * emission * met_.emission_weight(queue_.from[number_[lane]], surface_.surface(lane)), false);
+  if (!path.last && film_.wants_guides(path))
+    film_.add_guides(path, surface_.mixture(lane), get(surface_.surfaces().wo, lane), surface_.transmittance(lane),
+                     surface_.distance(lane));
+}
+
+// Finds the lanes whose samples split here.
+void PathIntegrator::split() {
+  splitting_ = 0;
+  const Splits &splits = settings_.splits;
+  for (uint32_t lane = 0; lane < surface_.count() && splits.any(); ++lane) {
+    const bool here = !(ends_ >> lane & 1) && !path_of(lane).split && (surface_.lobes().scatters >> lane & 1);
+    splitting_ |= uint32_t{here} << lane;
+    lights_[lane] = here ? splits.lights : 1u;
+    paths_[lane] = here ? splits.paths : 1u;
+    leader_[lane] = here ? path_of(lane).leader_of(splits.paths) : 0;
+  }
+}
+
+// Samples a light in every lane whose path continues, or several lights in a lane that splits.
+void PathIntegrator::light() {
+  uint32_t asking = ((1u << surface_.count()) - 1u) & ~ends_;
+  const uint32_t count = splitting_ ? settings_.splits.lights : 1;
+  for (uint32_t number = 0; number < count; ++number) {
+    if (splitting_)
+      numbers_.draw(kLightNumbers, surface_.count(), splitting_, count, number);
+    light_.ask(asking, surface_.surfaces(), surface_.lobes(), numbers_.numbers,
+               [&](uint32_t lane) { return path_of(lane).asking_path(); });
+    light_.light({surface_.surfaces(), surface_.lobes(), beta_, lights_});
+    each_lane(asking & light_.lit().lit & ~nothing_, [&](uint32_t lane) { send_shadow(lane); });
+    asking &= splitting_;
+  }
+}
+
+// Queues a lane's light sample with its shadow ray.
+void PathIntegrator::send_shadow(uint32_t lane) {
+  const Path &path = path_of(lane);
+  const WaitingLight waiting = film_.waiting(path, light_.lit().share, lane);
+  const glm::vec3 contribution = get(light_.lit().contribution, lane);
+  if (scene_.lights.no_shadow(light_.chosen(lane)))
+    return shadow_.push_lit(waiting, contribution);
+  Ray &ray = shadow_.push(waiting, contribution, path.passed_through);
+  if (shadow_.asks_light_path())
+    shadow_.set_light_path(path.asking_path());
+  write_shadow_ray(scene_, surface_, lane, light_.samples(), light_.lit(), ray);
+}
+
+// Samples the next ray of each path, or several rays in lanes that split.
+void PathIntegrator::go_on() {
+  uint32_t going = 0;
+  for (uint32_t lane = 0; lane < surface_.count(); ++lane)
+    going |= uint32_t(!(nothing_ >> lane & 1) && !path_of(lane).last) << lane;
+  const uint32_t count = splitting_ ? settings_.splits.paths : 1;
+  for (uint32_t branch = 0; branch < count; ++branch) {
+    if (splitting_)
+      numbers_.draw(kPathNumbers, surface_.count(), splitting_, count, branch);
+    scatter_.scatter({surface_.surfaces(), surface_.lobes(), numbers_.numbers, beta_, paths_});
+    occlusion_.look(occlusion_asked_, surface_, scatter_.next(), numbers_.numbers);
+    each_lane(going, [&](uint32_t lane) {
+      const bool passes = branch == 0 && path_of(lane).chooses_to_pass(surface_.lobes().pass[lane]);
+      // A path that passes straight on has no further branches: its first one looks around in the leader's place.
+      if (occlusion_asked_ >> lane & 1 && (passes || branch == leader_[lane]))
+        look_around(lane);
+      if (passes)
+        pass_straight(lane);
+      else
+        scatter(lane, branch);
+      going &= ~(uint32_t{passes} << lane);
+    });
+    going &= splitting_;
+  }
+}
+
+void PathIntegrator::look_around(uint32_t lane) {
+  const Path &path = path_of(lane);
+  film_.add_open(path, occlusion_.send(lane, surface_, scatter_.next(), path.slot, path.beta * recorded_opacity(surface_, lane),
+                                       path.passed_through, path.asking_path(), shadow_));
 }
 
 // Continues a path straight through a surface, unless the path has reached its limit of passed surfaces.
-void PathIntegrator::pass_straight_on(Path &path, const Surface &surface, const Ray &ray, double t, const glm::vec3 &weight) {
+void PathIntegrator::pass_straight(uint32_t lane) {
+  Path path = path_of(lane);
   if (path.crossings_left(settings_.transparent_bounces) == 0)
     return;
-  const double length = t * glm::length(ray.d);
-  path.beta *= weight;
-  path.passed += length;
-  path.length += length;
-  film_.pass_on(path, t);
+  const Hit &hit = surface_.hit(lane);
+  const Ray &ray = surface_.ray(lane);
+  film_.pass_on(path, hit.t);
+  path.beta *= surface_.transmittance(lane) / surface_.lobes().pass[lane];
+  path.length += surface_.distance(lane);
   path.count_crossings(1, settings_.transparent_bounces);
-  next_rays_.push_back(leave(surface, ray.d, ray.tmax - t));
-  next_rays_.back().kinds = path.kinds;
-  next_paths_.push_back(path);
+  next_.paths.push_back(path);
+  next_.from.push_back(queue_.from[number_[lane]]);
+  next_.from.back().passed += surface_.distance(lane);
+  next_.rays.push_back(leave(surface_.surface(lane), ray.d, ray.tmax - hit.t));
+  next_.rays.back().kinds = path.kinds;
 }
 
-bool PathIntegrator::survives(uint32_t scatterings, float u, float sharers, glm::vec3 &beta) {
-  if (scatterings <= kRouletteAfter)
-    return true;
-  // Russian roulette: end dim paths early and divide the survivors' throughput by their probability of survival. With the
-  // square root of beta instead of beta, paths survive longer: variance times rays falls by a twentieth on average over five
-  // scenes.
-  const float q = std::min(1.0f, std::sqrt(sharers * largest(beta)));
-  if (u >= q)
-    return false;
-  beta /= q;
-  return true;
-}
-
-std::unique_ptr<Integrator> make_path(const Scene &scene, const Camera &camera, const IntegratorSettings &settings) {
-  return std::make_unique<PathIntegrator>(scene, camera, settings);
+// Adds the next ray of a lane; branch: its number in a lane that splits.
+void PathIntegrator::scatter(uint32_t lane, uint32_t branch) {
+  const ScatterBlock &block = scatter_.next();
+  const Path &path = path_of(lane);
+  if (ends_ >> lane & 1 || !(block.sampled >> lane & 1))
+    return;
+  const bool splits = splitting_ >> lane & 1;
+  const uint32_t sharers = splits ? settings_.splits.paths : path.sharers;
+  glm::vec3 beta = get(block.beta, lane);
+  if (!ScatterStage::survives(path.scatterings + 1, numbers_.numbers.of[kVertexRoulette][lane], float(sharers), beta))
+    return;
+  Path &next = next_.paths.emplace_back(path);
+  if (splits)
+    next.split_off(branch, sharers, leader_[lane]);
+  next.scatter(beta, scatter_.kind(lane), block.diffuse >> lane & 1, block.transmitted >> lane & 1, block.pdf[lane] == 0.0);
+  next.in_view = path.in_view && film_.stays_in_view(block, lane);
+  next.length += surface_.distance(lane);
+  film_.set_shares(path, next, block.share, lane);
+  next_.from.push_back({get(surface_.surfaces().p, lane), get(surface_.lobes().ns, lane),
+                        (surface_.lobes().transmits >> lane & 1) != 0, block.pdf[lane], 0.0});
+  scatter_.write_ray(lane, surface_.hit(lane), next.kinds, next_.rays.emplace_back());
 }
 
 } // namespace lancer

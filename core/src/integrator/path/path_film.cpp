@@ -1,12 +1,14 @@
 #include "integrator/path/path_film.h"
 
-#include "sampling/color.h"
+#include "scene/color.h"
 
 #include <algorithm>
 
 namespace lancer {
 
-void PathFilm::begin(std::span<const SampleAddress> addresses, std::span<SampleResult> results) {
+void PathFilm::begin(std::span<const SampleAddress> addresses, std::span<SampleResult> results,
+                     std::vector<PathVertex> *trace) {
+  trace_ = trace;
   // Passes of places are recorded from the first sample of each pixel alone.
   only_combined_ = passes.only_places() && (!passes.places() || addresses.front().sample > 0);
   results_ = results;
@@ -96,6 +98,47 @@ void PathFilm::add_lit(const WaitingLight &waiting, const glm::vec3 &light) {
   passes.add(result, light, waiting.share, waiting.indirect);
 }
 
+uint32_t PathFilm::record(SurfaceStage &surfaces, std::span<const Path> paths, const size_t (&number)[kBlockLanes],
+                          uint32_t ends, uint32_t nothing) {
+  for (uint32_t lane = 0; trace_ && lane < surfaces.count(); ++lane)
+    trace(paths[number[lane]], surfaces.surface(lane), surfaces.hit(lane).t);
+  if (only_combined_)
+    return 0;
+  // As in Cycles, a surface that ends the path gives only its emission; the guides count its distance, unless it lies behind
+  // too many transparent layers.
+  uint32_t seen = 0, guiding = 0, asked = 0;
+  for (uint32_t lane = 0; lane < surfaces.count(); ++lane) {
+    const Path &path = paths[number[lane]];
+    seen |= uint32_t{path.in_view} << lane;
+    guiding |= uint32_t(wants_guides(path) && !path.last) << lane;
+  }
+  seen &= ~(ends | nothing);
+  if (!(seen | (guiding & ~nothing)))
+    return 0;
+  surfaces.describe();
+  each_lane(seen, [&](uint32_t lane) {
+    const Path &path = paths[number[lane]];
+    record(path, surfaces, lane);
+    asked |= uint32_t(passes.occlusion() && path.scatterings == 0) << lane;
+  });
+  return asked;
+}
+
+void PathFilm::record(const Path &path, const SurfaceStage &surfaces, uint32_t lane) {
+  // In most cases, the position suffices.
+  Surface surface;
+  if (path.is_first(settings_.splits.paths) || passes.uv())
+    surface = surfaces.surface(lane);
+  else
+    surface.p = get(surfaces.surfaces().p, lane);
+  record(path, surface, surfaces.material(lane), get(surfaces.means().normal, lane), recorded_opacity(surfaces, lane),
+         surfaces.hit(lane).t);
+  // Add the colours of the surface by component.
+  for (uint32_t component = 0; component < 3 && passes.components(); ++component)
+    results_[path.slot].light[kLightComponents + 3 * component + 2] += path.beta * get(surfaces.means().shown[component], lane);
+}
+
+// t: of the ray, from the last surface that it passed.
 void PathFilm::record(const Path &path, const Surface &surface, const Material &material, const glm::vec3 &normal,
                       const glm::vec3 &opacity, double t) {
   SampleResult &result = results_[path.slot];
@@ -104,7 +147,7 @@ void PathFilm::record(const Path &path, const Surface &surface, const Material &
   const bool here = path.leads && !record.seen && mean(opacity) >= settings_.alpha_threshold;
   // Place passes use the first sample of a pixel.
   if (path.leads && !record.seen && path.is_first(settings_.splits.paths))
-    record_place(scene_, surface, &material, record.depth + t, result);
+    record_place(scene_, surface, material, record.depth + t, result);
   if (here)
     record_first_surface(scene_, settings_, surface, normal, result);
   record.seen |= here;
@@ -112,12 +155,92 @@ void PathFilm::record(const Path &path, const Surface &surface, const Material &
     result.mist += (1.0f - mist_at(scene_, camera_, settings_, surface)) * mean(path.beta * opacity);
 }
 
-void PathFilm::miss(const Path &path) {
+void PathFilm::pass_absent(Path &path, const Ray &ray, HitStage &stage, size_t number, Hit &hit) {
+  const uint32_t limit = settings_.transparent_bounces;
+  const Hit end = hit;
+  // In most cases, the number of surfaces suffices.
+  const uint32_t count = stage.passed(number, end);
+  if (only_combined_ && !trace_ && count <= path.crossings_left(limit))
+    return path.count_crossings(count, limit);
+  for (const Crossing &layer : stage.absent(number)) {
+    const Hit &met = layer.hit;
+    if (!closer(met.t, met.instance, met.primitive, end))
+      return;
+    // A path that has reached its limit ends here.
+    if (path.crossings_left(limit) == 0) {
+      hit = met;
+      return;
+    }
+    // Passes may also record a surface of low opacity.
+    if (trace_ || awaits_surface(path)) {
+      const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, met);
+      if (trace_)
+        trace(path, surface, met.t);
+      if (awaits_surface(path)) {
+        const double unit = glm::length(ray.d);
+        shader_.shade(surface,
+                      {.wo = glm::vec3(-glm::normalize(ray.d)),
+                       .footprint = float(cone_.base + (path.length + met.t * unit) * cone_.spread),
+                       .path = path.light_path((met.t - ray.tmin) * unit / scene_.normalisation.scale)},
+                      absent_);
+        record(path, surface, *absent_.material, absent_.bsdf.ns, absent_.opacity(), met.t);
+      }
+    }
+    path.count_crossings(1, limit);
+  }
+}
+
+bool PathFilm::miss(const Path &path) {
   SampleResult &result = results_[path.slot];
   if (awaits_surface(path))
     forget_place(result);
   if (path.scatterings == 0 && passes.features())
     add_sky_guides(guides_[path.slot], result);
+  // A transparent film does not show the environment itself, only the light that it gives. The environment's pass shows both.
+  if (!path.in_view || !settings_.film_transparent)
+    return true;
+  cut(path, mean(path.beta));
+  return (settings_.passes & 1u << LANCER_PASS_ENVIRONMENT) != 0;
+}
+
+WaitingLight PathFilm::waiting(const Path &path, const Floats (&share)[2][3], uint32_t lane) const {
+  WaitingLight light;
+  light.slot = path.slot;
+  light.place = place_of(path);
+  light.indirect = path.scatterings > 0;
+  for (int component = 0; component < 2 && passes.components(); ++component)
+    light.share[component] = path.in_view ? get(share[component], lane) : shares_[place(path)].of[component];
+  return light;
+}
+
+void PathFilm::set_shares(const Path &path, const Path &next, const Floats (&share)[2][3], uint32_t lane) {
+  if (next.in_view || !passes.components())
+    return;
+  const Shares before = shares_[place(path)];
+  for (int component = 0; component < 2; ++component)
+    shares_[place(next)].of[component] = path.in_view ? get(share[component], lane) : before.of[component];
+}
+
+void PathFilm::trace(const Path &path, const Surface &surface, double t) {
+  trace_->push_back({scene_.normalisation.to_world(surface.p), t / scene_.normalisation.scale, surface.ns, path.beta,
+                     gathered(path), surface.instance, surface.primitive, surface.material, path.scatterings});
+}
+
+void PathFilm::add_open(const Path &path, const OcclusionStage::Open &open) {
+  for (const glm::vec3 &share : open.share)
+    results_[path.slot].light[kLightOcclusion] += share;
+  records_[path.slot].occlusion = open.by_next;
+}
+
+void PathFilm::count_occluded(std::span<const Path> paths, std::span<const Ray> rays, std::span<const Hit> hits,
+                              const OcclusionStage &occlusion) {
+  for (size_t i = 0; i < paths.size() && passes.occlusion(); ++i) {
+    if (paths[i].scatterings != 1 || !paths[i].leads)
+      continue;
+    const float weight = std::exchange(records_[paths[i].slot].occlusion, 0.0f);
+    if (weight > 0.0f && occlusion.occluded(rays[i], hits[i]))
+      results_[paths[i].slot].light[kLightOcclusion] -= glm::vec3(weight);
+  }
 }
 
 } // namespace lancer

@@ -5,18 +5,20 @@
 #include "integrator/aov/first_surface.h"
 #include "integrator/path/path_state.h"
 #include "integrator/sample.h"
+#include "integrator/stages/hit.h"
 #include "integrator/stages/light_passes.h"
+#include "integrator/stages/occlusion.h"
 
 namespace lancer {
 
 class PathFilm {
 public:
   PathFilm(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
-      : passes(settings), scene_(scene), camera_(camera), settings_(settings) {}
+      : passes(settings), scene_(scene), camera_(camera), settings_(settings), shader_(scene, &camera), cone_(camera) {}
   void set_splits(const Splits &splits) { settings_.splits = splits; }
 
-  // Begins the next batch, whose results are written to the given span.
-  void begin(std::span<const SampleAddress> addresses, std::span<SampleResult> results);
+  // Begins the next batch, whose results are written to the given span. trace: receives the vertices; may be null.
+  void begin(std::span<const SampleAddress> addresses, std::span<SampleResult> results, std::vector<PathVertex> *trace);
   // Adds the indirect light to the results, clamped where the settings request it.
   void end();
   // Return the light gathered so far by a path, or by all paths of a sample.
@@ -35,6 +37,8 @@ public:
 
   // Adds light that a path transports to the camera.
   void add(const Path &path, const glm::vec3 &radiance, bool environment);
+  // Returns the record of a lane's light sample that waits for its shadow ray. share: LitBlock::share.
+  WaitingLight waiting(const Path &path, const Floats (&share)[2][3], uint32_t lane) const;
   // Adds the part of a light sample's contribution that its shadow ray transmits.
   void add_lit(const WaitingLight &waiting, const glm::vec3 &light);
   // Subtracts a share from the alpha of a sample.
@@ -42,27 +46,32 @@ public:
 
   // Whether no pass but the picture is requested: records stay unused.
   bool only_combined() const { return only_combined_; }
-  // Fills the passes that describe the camera's view. t: of the ray, from the last surface that it passed.
-  void record(const Path &path, const Surface &surface, const Material &material, const glm::vec3 &normal,
-              const glm::vec3 &opacity, double t);
+  // Fills the passes of a block's surfaces that the camera sees. number: of each lane's path; ends, nothing: bits of lanes
+  // whose path ends, and where a hole has left nothing. Returns the lanes that ask for ambient occlusion.
+  uint32_t record(SurfaceStage &surfaces, std::span<const Path> paths, const size_t (&number)[kBlockLanes], uint32_t ends,
+                  uint32_t nothing);
+  // Counts the absent surfaces that ray `number` of the stage has passed before its hit, as if its path had passed them one by
+  // one. Where the path reaches its limit, the hit becomes that surface.
+  void pass_absent(Path &path, const Ray &ray, HitStage &stage, size_t number, Hit &hit);
   // Whether the first surface is still to come.
   bool awaits_surface(const Path &path) const {
     return path.in_view && path.leads && !only_combined_ && !records_[path.slot].seen;
-  }
-  // Adds the colour of a surface for a component.
-  void add_color(const Path &path, uint32_t component, const glm::vec3 &color) {
-    results_[path.slot].light[kLightComponents + 3 * component + 2] += path.beta * color;
   }
   // Records that a path passes straight through a surface at t.
   void pass_on(const Path &path, double t) {
     if (!only_combined_ && path.leads)
       records_[path.slot].depth += t;
   }
-  // Records that a path hits nothing.
-  void miss(const Path &path);
+  // Records that a path hits nothing. Returns whether picture or passes show the environment there.
+  bool miss(const Path &path);
 
-  // The shares of the first scattering by component. The caller sets them when a path leaves the camera's view.
-  glm::vec3 (&shares(const Path &path))[2] { return shares_[place(path)].of; }
+  // Whether a path stays in the camera's view by its lane's next ray: the view continues through clear glass.
+  bool stays_in_view(const ScatterBlock &next, uint32_t lane) const {
+    return settings_.transparent_glass && (next.transmitted >> lane & 1) && !(next.diffuse >> lane & 1) &&
+           next.alpha2[lane] <= settings_.glass_alpha2;
+  }
+  // Sets the shares of a path's next one. Those of the first scattering are kept; share: ScatterBlock::share.
+  void set_shares(const Path &path, const Path &next, const Floats (&share)[2][3], uint32_t lane);
 
   // Whether a path still looks for the surface of the denoising guides.
   bool wants_guides(const Path &path) const { return passes.features() && path.leads && guides_[path.slot].open; }
@@ -72,10 +81,11 @@ public:
     add_denoising_guides(scene_, camera_, mixture, wo, transmittance, distance, guides_[path.slot], results_[path.slot]);
   }
 
-  // Ambient occlusion: the unoccluded share so far, and the part that the next ray subtracts if it is occluded.
-  void add_open(const Path &path, const glm::vec3 &weight) { results_[path.slot].light[kLightOcclusion] += weight; }
-  void keep_occlusion(const Path &path, float occlusion) { records_[path.slot].occlusion = occlusion; }
-  float take_occlusion(const Path &path) { return std::exchange(records_[path.slot].occlusion, 0.0f); }
+  // Ambient occlusion: adds the open share, and keeps what the next ray takes from it.
+  void add_open(const Path &path, const OcclusionStage::Open &open);
+  // Subtracts the weight of each occluded next ray from the ambient occlusion of its first surface.
+  void count_occluded(std::span<const Path> paths, std::span<const Ray> rays, std::span<const Hit> hits,
+                      const OcclusionStage &occlusion);
 
   const LightPasses passes;
   Energy energy; // of the batch
@@ -88,6 +98,10 @@ private:
     return places() > 1 ? indirect_[(slot + 1) * places() - 1] : glm::vec3(0.0f);
   }
   void clamp(uint32_t slot);
+  void record(const Path &path, const Surface &surface, const Material &material, const glm::vec3 &normal,
+              const glm::vec3 &opacity, double t);
+  void record(const Path &path, const SurfaceStage &surfaces, uint32_t lane);
+  void trace(const Path &path, const Surface &surface, double t);
 
   // State of a sample for the passes other than Combined. The record stays at the sample's slot while the path moves to other
   // queues.
@@ -104,6 +118,10 @@ private:
   const Scene &scene_;
   const Camera &camera_;
   IntegratorSettings settings_;
+  Shader shader_; // of absent surfaces
+  PixelCone cone_;
+  Shaded absent_;
+  std::vector<PathVertex> *trace_ = nullptr;
   bool only_combined_ = true;
   std::span<SampleResult> results_;
   // By place.
@@ -113,5 +131,10 @@ private:
   std::vector<Record> records_;
   std::vector<DenoisingGuides> guides_; // where passes for denoising are requested
 };
+
+// Returns the opacity with which passes count a surface: Cycles' passes count the whole surface of a holdout object.
+inline glm::vec3 recorded_opacity(const SurfaceStage &surfaces, uint32_t lane) {
+  return surfaces.holes() >> lane & 1 ? glm::vec3(1.0f) : surfaces.opacity(lane);
+}
 
 } // namespace lancer

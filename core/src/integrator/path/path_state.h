@@ -1,11 +1,8 @@
-// The state of a path from vertex to vertex.
+// The state of a path from vertex to vertex, beside its ray and its last scattering.
 #pragma once
 
-#include "integrator/sample.h"
-#include "lancer.h"
-#include "lights/light.h"
+#include "integrator/stages/numbers.h"
 #include "nodes/light_path.h"
-#include "sampling/sobol.h"
 
 #include <algorithm>
 
@@ -16,10 +13,6 @@ struct Path {
 
   Sampler sampler;
   glm::vec3 beta{1.0f};
-  glm::dvec3 from{0.0};   // last scattering point
-  glm::vec3 normal{0.0f}; // shading normal at that point; with from and transmits, the LightQuery of its light samples
-  bool transmits = false;
-  double pdf = 0.0;     // of the BSDF sample that gave the ray; 0 after the camera or a single direction
   uint32_t slot;        // of the sample's result
   bool split = false;   // the sample has split
   uint32_t branch = 0;  // number among its sample's paths
@@ -32,7 +25,6 @@ struct Path {
   PathStory story;                    // for nodes that read it
   bool in_view = true;                // the path has passed no surface but clear glass, so it still shows the camera's view
   bool last = false;                  // the path ends at the next surface
-  double passed = 0.0;                // distance from the last scattering, through layers
   double length = 0.0;                // of the whole path
 
   // Returns the number of layers that the path may still pass straight through: up to limit on the whole path, and at least one
@@ -45,6 +37,22 @@ struct Path {
     layers += count;
     passed_through += count;
     last = passed_through >= limit;
+  }
+  // Makes the path a branch of its sample, which splits into count paths.
+  void split_off(uint32_t number, uint32_t count, uint32_t leader) {
+    sampler = Sampler(sampler.pixel(), sampler.sample() * count + number);
+    branch = number;
+    sharers = count;
+    split = true;
+    leads = leads && number == leader;
+  }
+  // Continues the path by a ray of this kind. throughput: of the ray; singular: it has a single direction.
+  void scatter(const glm::vec3 &throughput, uint32_t kind, bool is_diffuse, bool transmitted, bool singular) {
+    beta = throughput;
+    kinds = kind;
+    layers = 0;
+    ++scatterings;
+    story.scatter(is_diffuse, transmitted, singular);
   }
   // pass: probability of passing straight through.
   bool chooses_to_pass(float pass) const {
@@ -62,8 +70,6 @@ struct Path {
   // Whether the ray shows a light or an environment that is hidden from some kinds of rays. Diffuse transmission is of two
   // kinds.
   bool shows_light(uint32_t hidden_from) const { return !((kinds | (story.kinds & LANCER_RAY_DIFFUSE)) & hidden_from); }
-  // Returns the query with which the last scattering chose its light.
-  LightQuery light_query() const { return LightQuery(from, normal, transmits); }
   // Returns the Light Path values for nodes. length: of its ray, in scene units, from the ray's start.
   LightPath<float> light_path(double ray_length) const { return story.told(float(ray_length), scatterings, passed_through); }
   // Returns the Light Path values for a light sample at a vertex, which counts as a scattering, as in Cycles.

@@ -1,11 +1,9 @@
 // Compiled once per instruction set, with LANCER_ISA as its name. This file must emit no shared (weak) symbol: see
 // bvh_kernel.cpp.
-#include "integrator/stages/camera_kernel.h"
+#include "integrator/stages/camera.h"
 
 #include "sampling/pixel_filter.h"
-#include "sampling/scramble.h"
 #include "scene/flat_camera.h"
-#include "simd/kernel_choice.h"
 #include "simd/kernel_lanes.h"
 
 namespace lancer {
@@ -13,26 +11,25 @@ namespace {
 
 LANCER_LANE D to_double(U a) { return widen(to_float(a >> 16)) * D(65536.0) + widen(to_float(a & U(0xffffu))); }
 
-[[gnu::flatten]] void rays(CameraBlock &block) {
-  const Camera &camera = *block.camera;
-  for (int first = 0; first < kCameraLanes; first += kLanes) {
+[[gnu::flatten]] void rays(const Camera &camera, const FilterTable &filter, const FilmBlock &film, CameraBlock &rays) {
+  for (int first = 0; first < kBlockLanes; first += kLanes) {
     // Sample a place on the film by the pixel filter.
-    const U x = load(block.x + first), y = load(block.y + first);
-    const U pixel = hash_combine(hash_combine(U(block.key), x), y);
-    store(block.pixel + first, pixel);
-    F u[4];
-    const uint32_t dimensions = camera.lens_radius > 0.0 ? 4 : 2;
+    const U x = load(film.x + first), y = load(film.y + first);
+    const U pixel = hash_combine(hash_combine(U(film.key), x), y);
+    store(rays.pixel + first, pixel);
+    F u[kDimensionVertex];
+    const uint32_t dimensions = camera.lens_radius > 0.0 ? kDimensionVertex : kDimensionLens;
     for (uint32_t i = 0; i < dimensions; ++i)
-      u[i] = scrambled(load(block.reversed_point[i] + first), pixel, i);
-    const Vector2<D> raster{(to_double(x) + D(0.5)) + widen(sample_filter(*block.filter, u[0])),
-                            (to_double(y) + D(0.5)) + widen(sample_filter(*block.filter, u[1]))};
+      u[i] = scrambled(load(film.reversed_point[i] + first), pixel, i);
+    const Vector2<D> raster{(to_double(x) + D(0.5)) + widen(sample_filter(filter, u[kDimensionPixel])),
+                            (to_double(y) + D(0.5)) + widen(sample_filter(filter, u[kDimensionPixel + 1]))};
     // Make the ray through that place.
     Vector2<D> lens{D(0.0), D(0.0)};
     if (camera.lens_radius > 0.0)
-      lens = round_aperture(camera, u[2], u[3]);
+      lens = round_aperture(camera, u[kDimensionLens], u[kDimensionLens + 1]);
     const RayLanes<F> ray = flat_ray<F>(camera, raster, lens);
-    store3(block.o, first, ray.o);
-    store3(block.d, first, ray.d);
+    store3(rays.o, first, ray.o);
+    store3(rays.d, first, ray.d);
   }
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bsdf/bsdf.h"
-#include "sampling/color.h"
+#include "scene/color.h"
 
 namespace lancer {
 

@@ -1,8 +1,33 @@
 #include "integrator/stages/shadow.h"
 
+#include "integrator/stages/scatter.h"
+#include "integrator/stages/terminator.h"
+#include "lancer.h"
+
+#include <limits>
+
 namespace lancer {
 
-uint64_t ShadowQueue::trace_solid() {
+void write_shadow_ray(const Scene &scene, const SurfaceStage &surfaces, uint32_t lane, const LightSamples &samples,
+                      const LitBlock &lit, Ray &ray) {
+  const bool far = samples.far >> lane & 1;
+  if (lit.lifted >> lane & 1) {
+    LightSample sample;
+    sample.wi = get(samples.wi, lane);
+    sample.target = get(samples.target, lane);
+    sample.distance = far ? std::numeric_limits<double>::infinity() : 1.0;
+    const LobeBlock &lobes = surfaces.lobes();
+    ray = shadow_ray(scene.geometry, surfaces.surface(lane), get(lobes.ns, lane), get(lobes.ng, lane), sample);
+    return;
+  }
+  const glm::dvec3 o = get(lit.origin, lane);
+  if (far)
+    leave(surfaces.hit(lane), o, get(samples.wi, lane), std::numeric_limits<double>::infinity(), LANCER_RAY_SHADOW, ray);
+  else
+    leave(surfaces.hit(lane), o, get(samples.target, lane) - o, 1.0, LANCER_RAY_SHADOW, ray);
+}
+
+uint64_t ShadowStage::trace_solid() {
   occluded_.assign(rays_.size(), 0);
   scene_.accelerator->any_hit(rays_, occluded_);
   for (size_t i = 0; i < rays_.size(); ++i)
@@ -11,13 +36,10 @@ uint64_t ShadowQueue::trace_solid() {
   return rays_.size();
 }
 
-uint64_t ShadowQueue::trace_clear() {
+uint64_t ShadowStage::trace_clear() {
   crossings_.begin(rays_.size());
   occluded_.assign(rays_.size(), 0);
-  const HitFilter filter{
-      scene_.transparent_instances.data(),
-      [](void *queue, size_t ray, const Hit &hit) { return static_cast<ShadowQueue *>(queue)->stops(ray, hit); }, this};
-  scene_.accelerator->any_hit(rays_, occluded_, filter);
+  scene_.accelerator->any_hit(rays_, occluded_, *this);
   for (size_t i = 0; i < rays_.size(); ++i) {
     glm::vec3 &contribution = waiting_[i].contribution;
     if (occluded_[i])
@@ -30,7 +52,7 @@ uint64_t ShadowQueue::trace_clear() {
   return rays_.size();
 }
 
-bool ShadowQueue::stops(size_t ray, const Hit &hit) {
+bool ShadowStage::counts(size_t ray, const Hit &hit) {
   Crossing *known = crossings_.find(ray, hit);
   if (known && known->hit.primitive == hit.primitive)
     return false;

@@ -1,20 +1,28 @@
 // Shadow rays, queued and traced as a batch: they determine the part of each light contribution that arrives.
+//
+// In: contributions and their rays, from integrators and the occlusion stage. Out: the contributions times the transmittance of
+// the surfaces on the way, in the order of pushing.
 #pragma once
 
 #include "integrator/sample.h"
 #include "integrator/stages/crossings.h"
+#include "integrator/stages/light.h"
 #include "integrator/stages/light_passes.h"
-#include "integrator/stages/shading.h"
+#include "integrator/stages/shader.h"
 
 #include <algorithm>
 
 namespace lancer {
 
-class ShadowQueue {
+// Writes the ray from a lane to its light sample in place.
+void write_shadow_ray(const Scene &scene, const SurfaceStage &surfaces, uint32_t lane, const LightSamples &samples,
+                      const LitBlock &lit, Ray &ray);
+
+class ShadowStage final : HitFilter {
 public:
-  ShadowQueue(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
-      : scene_(scene), shader_(scene, &camera), deepest_(settings.transparent_shadows),
-        any_clear_(settings.all_features || (scene.features & kFeatureTransparency)),
+  ShadowStage(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
+      : HitFilter(scene.transparent_instances.data()), scene_(scene), shader_(scene, &camera),
+        deepest_(settings.transparent_shadows), any_clear_(settings.all_features || (scene.features & kFeatureTransparency)),
         asks_light_path_(std::ranges::any_of(
             scene.materials, [](const Material &m) { return m.transmittance.varies() && m.program.asks_light_path; })),
         crossings_(scene.geometry) {}
@@ -25,21 +33,11 @@ public:
     rays_.push_back(ray);
     waiting_.push_back({waiting, contribution, passed});
   }
-  // Queues a contribution without shares. Returns the ray for the caller to write in place: a copy would stall on the pending
-  // stores of its members.
-  Ray &push(uint32_t slot, uint32_t place, const glm::vec3 &contribution, bool indirect = false, uint32_t passed = 0) {
-    Waiting &waiting = waiting_.emplace_back();
-    waiting.light.slot = slot;
-    waiting.light.place = place;
-    waiting.light.indirect = indirect;
-    waiting.contribution = contribution;
-    waiting.passed = passed;
+  // Queues a contribution and returns its ray for the caller to write in place: a copy would stall on the pending stores of its
+  // members.
+  Ray &push(const WaitingLight &waiting, const glm::vec3 &contribution, uint32_t passed = 0) {
+    waiting_.push_back({waiting, contribution, passed});
     return rays_.emplace_back();
-  }
-  // Sets the shares by component of the last pushed light.
-  void set_shares(const glm::vec3 (&share)[2]) {
-    waiting_.back().light.share[0] = share[0];
-    waiting_.back().light.share[1] = share[1];
   }
 
   // Whether a surface may read the Light Path of a shadow ray, which set_light_path() sets for the last pushed ray.
@@ -83,7 +81,7 @@ private:
   // Traces rays where some surfaces transmit light.
   uint64_t trace_clear();
   // Whether a hit surface occludes a ray; keeps the surface's transmittance if not.
-  bool stops(size_t ray, const Hit &hit);
+  bool counts(size_t ray, const Hit &hit) override;
 
   const Scene &scene_;
   Shader shader_;

@@ -2,6 +2,7 @@
 // the triangles' own edges cast no shadow there. The method of Hanika, Hacking the Shadow Terminator (Ray Tracing Gems II, 4).
 #pragma once
 
+#include "lights/light.h"
 #include "scene/geometry.h"
 #include "scene/surface.h"
 #include "simd/vectors.h"
@@ -20,5 +21,9 @@ template <class F> LANCER_LANE F terminator_amount(F limit, const Vec3<F> &n, co
 // the geometric one, both on the viewer's side. The offset is 0 if the mesh is not smooth or if wi is far from grazing.
 glm::dvec3 terminator_offset(const Geometry &geometry, const Surface &surface, const glm::vec3 &n, const glm::vec3 &ng,
                              const glm::vec3 &wi);
+
+// Returns a shadow ray to a light's sample; ns, ng: the shading and the geometric normal, both on the viewer's side.
+Ray shadow_ray(const Geometry &geometry, const Surface &surface, const glm::vec3 &ns, const glm::vec3 &ng,
+               const LightSample &sample);
 
 } // namespace lancer

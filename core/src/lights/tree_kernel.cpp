@@ -1,10 +1,9 @@
 // Compiled once per instruction set, with LANCER_ISA as its name. This file must emit no shared (weak) symbol: see
 // bvh_kernel.cpp.
-#include "lights/light_kernel.h"
+#include "lights/tree_kernel.h"
 
 #include "lights/light_tree.h"
 #include "lights/light_weights.h"
-#include "lights/seen_face.h"
 #include "simd/kernel_choice.h"
 #include "simd/kernel_lanes.h"
 
@@ -39,7 +38,7 @@ LANCER_LANE uint32_t go_down(const LightBranches &tree, uint32_t number, LightWa
 
 [[gnu::flatten]] void choose(const LightBranches &tree, LightWalk *walks, uint32_t count) {
   // Descend level by level: the step of the next walk starts before the previous walk's step has ended.
-  constexpr uint32_t kMost = kLightLanes;
+  constexpr uint32_t kMost = kBlockLanes;
   for (uint32_t begin = 0; begin < count; begin += kMost) {
     uint32_t at[kMost], open[kMost], open_count = count - begin < kMost ? count - begin : kMost;
     for (uint32_t i = 0; i < open_count; ++i) {
@@ -104,11 +103,11 @@ LANCER_LANE uint32_t pass(const LightBranch &branch, const FloatWay &way) {
   return passed;
 }
 
-[[gnu::flatten]] void along(const LightBranches &tree, const SegmentBlock &segments, uint32_t count, LightKernel::Visit visit,
+[[gnu::flatten]] void along(const LightBranches &tree, const SegmentBlock &segments, uint32_t count, TreeKernel::Visit visit,
                             void *context) {
   // Round the segments to float.
-  alignas(64) float o[3][kLightLanes], inverse[3][kLightLanes], slack[kLightLanes], end[kLightLanes];
-  for (int first = 0; first < kLightLanes; first += kLanes) {
+  alignas(64) float o[3][kBlockLanes], inverse[3][kBlockLanes], slack[kBlockLanes], end[kBlockLanes];
+  for (int first = 0; first < kBlockLanes; first += kLanes) {
     const D3 d = load3(segments.d, first);
     const V3 from = narrow(load3(segments.from, first)), wi = narrow(d / sqrt(dot(d, d)));
     store3(o, first, from);
@@ -147,49 +146,10 @@ LANCER_LANE uint32_t pass(const LightBranch &branch, const FloatWay &way) {
   }
 }
 
-[[gnu::flatten]] void sample_sky(const DirectionTable &map, SkyBlock &block) {
-  for (int first = 0; first < kLightLanes; first += kLanes) {
-    const DirectionSample<F> sample = sample_direction(map, load(block.u[0] + first), load(block.u[1] + first));
-    store3(block.wi, first, sample.direction);
-    store(block.pdf + first, sample.pdf);
-  }
-}
-
-[[gnu::flatten]] void sky_density(const DirectionTable &map, SkyBlock &block) {
-  for (int first = 0; first < kLightLanes; first += kLanes)
-    store(block.pdf + first, direction_pdf<F>(map, place_of(narrow(load3(block.wi, first)))));
-}
-
-[[gnu::flatten]] void sample_faces(FaceBlock &block) {
-  for (int first = 0; first < kLightLanes; first += kLanes) {
-    if (!(block.used >> first))
-      return;
-    const Placements<F> placed(block.placement + first);
-    V3 corner[3];
-    for (int i = 0; i < 3; ++i)
-      corner[i] = load3(block.corner[i], first);
-    const D3 p = load3(block.p, first);
-    const SeenFace<F> seen(MapLanes<F>(placed, Placements<F>::kToWorld), corner, p);
-    const Vector2<D> weights = seen.sample(load(block.u[0] + first), load(block.u[1] + first));
-    const SurfaceLanes<F> surface = triangle_surface(placed, corner, corner, mask_of(0), weights.x, weights.y);
-    const D3 v = surface.p - p, ng = widen(surface.ng);
-    const D distance = sqrt(dot(v, v));
-    const D3 wi = v / distance;
-    // End on the side that p sees, off the surface by the surface's own error bound.
-    const D side = select(dot(ng, wi) < D(0.0), D(1.0), D(-1.0));
-    store3(block.wi, first, wi);
-    store3(block.target, first, D3(surface.p + (side * surface.offset) * ng));
-    store(block.pdf + first, select(distance > D(0.0), seen.pdf(v, surface.ng), D(0.0)));
-    store(block.weights[0] + first, weights.x);
-    store(block.weights[1] + first, weights.y);
-    store3(block.ng, first, surface.ng);
-  }
-}
-
 } // namespace
 
 namespace LANCER_ISA {
-const LightKernel light_kernel = {LANCER_ISA_NAME, choose, probability, along, sample_sky, sky_density, sample_faces};
+const TreeKernel tree_kernel = {LANCER_ISA_NAME, choose, probability, along};
 }
 
 } // namespace lancer

@@ -1,4 +1,4 @@
-// The parts of a material's lobes that are the same at every hit, computed once at commit.
+// The parts of a lobe that are the same at every hit, and their values for the lanes of a block. Commit computes the record.
 #pragma once
 
 #include "bsdf/cached_plans.h"
@@ -7,8 +7,6 @@
 #include <vector>
 
 namespace lancer {
-
-struct Material;
 
 // Flags of the lobe inputs that differ from their neutral value; the others need not be read.
 struct LobeParts {
@@ -77,9 +75,6 @@ LANCER_LANE constexpr bool needed(PrincipledParameter parameter, const LobeParts
     return true;
   }
 }
-
-// Returns one record per lobe.
-std::shared_ptr<const ReadyLobe[]> make_ready_lobes(const Material &material);
 
 // A lobe for each lane, all with the same code.
 template <class F> struct LaneLobes : LaneRecords<F, ReadyLobe> {

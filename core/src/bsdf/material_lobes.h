@@ -3,7 +3,7 @@
 #pragma once
 
 #include "bsdf/principled.h"
-#include "compile/ready_lobes.h"
+#include "bsdf/ready_lobe.h"
 #include "scene/material.h"
 
 namespace lancer {

@@ -1,25 +1,18 @@
-// Camera rays of a batch of samples.
-#include "integrator/stages/camera_rays.h"
-
-#include "integrator/stages/camera_kernel.h"
-#include "integrator/stages/lane_access.h"
+#include "integrator/stages/camera.h"
 
 namespace lancer {
 
 const CameraKernel &camera_kernel() { return LANCER_CHOSEN_SHADING_KERNEL(camera_kernel); }
 
-RayGenerator::RayGenerator(const Camera &camera, const IntegratorSettings &settings)
+CameraStage::CameraStage(const Camera &camera, const IntegratorSettings &settings)
     : camera_(camera), filter_(settings.filter, settings.filter_width), seed_(settings.seed),
       middle_(settings.kind != IntegratorKind::Path && settings.samples == 1),
       plain_(!middle_ && !camera.is_panorama() && (!(camera.lens_radius > 0.0) || camera.aperture_blades < 3)),
-      kernel_(camera_kernel()), block_(std::make_unique<CameraBlock>()) {
-  *block_ = {};
-  block_->camera = &camera_;
-  block_->filter = &filter_.table();
-  block_->key = hash(settings.seed);
+      kernel_(camera_kernel()) {
+  film_.key = hash(settings.seed);
 }
 
-uint32_t RayGenerator::aim(std::span<const SampleAddress> addresses) {
+uint32_t CameraStage::aim(std::span<const SampleAddress> addresses) {
   uint32_t looking = 0;
   if (!plain_) {
     for (uint32_t lane = 0; lane < addresses.size(); ++lane)
@@ -27,24 +20,24 @@ uint32_t RayGenerator::aim(std::span<const SampleAddress> addresses) {
     return looking;
   }
   // Most lanes have the same sample: look up its digits once.
-  uint32_t sample = ~addresses[0].sample, digits[4] = {};
+  uint32_t sample = ~addresses[0].sample, digits[kDimensionVertex] = {};
   for (uint32_t lane = 0; lane < addresses.size(); ++lane) {
     // The region's place in the image is part of the address: a border render repeats the full image's numbers.
-    block_->x[lane] = camera_.x + addresses[lane].x;
-    block_->y[lane] = camera_.y + addresses[lane].y;
+    film_.x[lane] = camera_.x + addresses[lane].x;
+    film_.y[lane] = camera_.y + addresses[lane].y;
     if (addresses[lane].sample != sample) {
       sample = addresses[lane].sample;
-      for (uint32_t i = 0; i < 4; ++i)
+      for (uint32_t i = 0; i < kDimensionVertex; ++i)
         digits[i] = sobol::reversed_point(sample, kDimensionPixel + i);
     }
-    for (uint32_t i = 0; i < 4; ++i)
-      block_->reversed_point[i][lane] = digits[i];
+    for (uint32_t i = 0; i < kDimensionVertex; ++i)
+      film_.reversed_point[i][lane] = digits[i];
   }
-  kernel_.rays(*block_);
+  kernel_.rays(camera_, filter_.table(), film_, rays_);
   return (1u << addresses.size()) - 1u;
 }
 
-bool RayGenerator::aim_alone(const SampleAddress &address, uint32_t lane) {
+bool CameraStage::aim_alone(const SampleAddress &address, uint32_t lane) {
   const uint32_t x = camera_.x + address.x, y = camera_.y + address.y;
   const Sampler sampler(seed_, x, y, address.sample);
   glm::dvec2 raster(double(x) + 0.5, double(y) + 0.5), lens(0.0);
@@ -55,9 +48,9 @@ bool RayGenerator::aim_alone(const SampleAddress &address, uint32_t lane) {
       lens = camera_.aperture(sampler.get2(kDimensionLens));
   }
   const Ray ray = camera_.ray(raster, lens);
-  block_->pixel[lane] = sampler.pixel();
-  put(ray.o, block_->o, lane);
-  put(ray.d, block_->d, lane);
+  rays_.pixel[lane] = sampler.pixel();
+  put(ray.o, rays_.o, lane);
+  put(ray.d, rays_.d, lane);
   return !(ray.tmax < 0.0);
 }
 

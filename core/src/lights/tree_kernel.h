@@ -1,7 +1,7 @@
 // The tree of many lights as kernels read it, and the walks down the tree. All records are plain numbers.
 #pragma once
 
-#include "sampling/direction_table.h"
+#include "simd/block.h"
 #include "simd/kernel_choice.h"
 
 #include <cstdint>
@@ -53,46 +53,16 @@ struct LightWalk {
   double u = 0.0, probability = 0.0;
 };
 
-// Records of light sampling in lanes. Kernels read and write these plain numbers.
-inline constexpr int kLightLanes = 16;
-
 // Segments of rays: from the last scattering along d, up to the distance end. normal and transmits are those of the LightQuery
 // at that scattering.
 struct alignas(64) SegmentBlock {
-  double from[3][kLightLanes], d[3][kLightLanes], end[kLightLanes]; // d: of any length
-  float normal[3][kLightLanes];
+  Doubles from[3], d[3], end; // d: of any length
+  Floats normal[3];
   uint32_t transmits; // bits of lanes
 };
 
-// LightHit of each lane, and the probability with which the last scattering chose the light.
-struct alignas(64) MetLight {
-  double pdf[kLightLanes], distance[kLightLanes], chosen[kLightLanes];
-  float radiance[3][kLightLanes];
-};
-
-// Directions to the environment, and the density with which its map gives them.
-struct alignas(64) SkyBlock {
-  float u[2][kLightLanes];
-  double wi[3][kLightLanes], pdf[kLightLanes]; // wi: unit
-};
-
-// One face of an emitting mesh for each lane, and the sample that a point takes of it.
-struct alignas(64) FaceBlock {
-  // Input: the mesh's placement as Instance::placement(); the face's corners in object space; the shaded point; two random
-  // numbers.
-  const double *placement[kLightLanes];
-  float corner[3][3][kLightLanes]; // by corner, axis
-  double p[3][kLightLanes];
-  float u[2][kLightLanes];
-  uint32_t used = 0; // bits of lanes
-  // The sample, as LightSample, and its weights of corners 1 and 2.
-  alignas(64) double wi[3][kLightLanes], target[3][kLightLanes], pdf[kLightLanes], weights[2][kLightLanes];
-  // The face's normal, outwards.
-  float ng[3][kLightLanes];
-};
-
-// Kernels of light sampling, one copy per instruction set; all copies give the same bits.
-struct LightKernel {
+// One copy per instruction set; all copies give the same bits.
+struct TreeKernel {
   const char *name;
   // Chooses a light for each walk: reads u as the random number and writes the rest of it back.
   void (*choose)(const LightBranches &tree, LightWalk *walks, uint32_t count);
@@ -102,14 +72,9 @@ struct LightKernel {
   // Calls visit(context, lane, light) for all lights that the first count segments may hit; no other light can be hit.
   using Visit = void (*)(void *context, uint32_t lane, uint32_t light);
   void (*along)(const LightBranches &tree, const SegmentBlock &segments, uint32_t count, Visit visit, void *context);
-  // sample_sky samples directions of the environment from the numbers u; sky_density computes the density of given directions.
-  void (*sample_sky)(const DirectionTable &map, SkyBlock &block);
-  void (*sky_density)(const DirectionTable &map, SkyBlock &block);
-  // Samples a point of each face, as Emitter::sample_face().
-  void (*sample_faces)(FaceBlock &block);
 };
 
-// Each copy is light_kernel.cpp compiled with LANCER_ISA set to its name.
-LANCER_DECLARE_KERNEL(LightKernel, light_kernel)
+// Each copy is tree_kernel.cpp compiled with LANCER_ISA set to its name.
+LANCER_DECLARE_KERNEL(TreeKernel, tree_kernel)
 
 } // namespace lancer

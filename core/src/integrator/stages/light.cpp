@@ -1,0 +1,228 @@
+#include "integrator/stages/light.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lancer {
+
+const LightKernel &light_kernel() { return LANCER_CHOSEN_SHADING_KERNEL(light_kernel); }
+
+namespace {
+
+LightQuery query_of(const SurfaceBlock &surfaces, const LobeBlock &lobes, uint32_t lane) {
+  return LightQuery(get(surfaces.p, lane), get(lobes.ns, lane), lobes.transmits >> lane & 1);
+}
+
+} // namespace
+
+LightStage::LightStage(const Scene &scene, const Camera *camera)
+    : scene_(scene), kernel_(light_kernel()), emission_(scene.node_scene(camera), scene.materials), sky_(scene, camera) {}
+
+// Clears the samples of all lanes.
+void LightStage::begin() {
+  static const Light nothing;
+  lamps_ = emitters_ = skies_ = samples_.far = 0;
+  for (uint32_t lane = 0; lane < kBlockLanes; ++lane) {
+    lamp_[lane] = &nothing;
+    samples_.pdf[lane] = 0.0;
+    samples_.delta[lane] = samples_.hidden[lane] = 0;
+  }
+}
+
+void LightStage::choose(uint32_t asking, const SurfaceBlock &surfaces, const LobeBlock &lobes, const VertexNumbers &numbers) {
+  begin();
+  const LightSet &lights = scene_.lights;
+  if (lights.binary_tree().empty())
+    return;
+  asking &= lobes.scatters & lobes.used;
+  kernel_.choose(surfaces, lobes, numbers, lights.binary_tree().nodes(), choices_);
+  choose_of_many(asking, surfaces, lobes);
+  each_lane(asking, [&](uint32_t lane) {
+    const uint32_t light = choices_.number[lane];
+    if (!(choices_.probability[lane] > 0.0))
+      return;
+    samples_.hidden[lane] = lights.hidden_from(light);
+    if (light < lights.lights().size()) {
+      lamp_[lane] = &lights.lights()[light];
+      samples_.far |= uint32_t(lamp_[lane]->kind == LightKind::Sun) << lane;
+      lamps_ |= 1u << lane;
+    } else {
+      (light == lights.environment_light() ? skies_ : emitters_) |= 1u << lane;
+    }
+  });
+  for (int i = 0; i < 2; ++i)
+    std::copy_n(numbers.of[kVertexLight + i], kBlockLanes, faces_.u[i]);
+  choose_faces(surfaces, lobes);
+}
+
+// Continues the choice in the lanes that have chosen the cluster of all lights with a position.
+void LightStage::choose_of_many(uint32_t asking, const SurfaceBlock &surfaces, const LobeBlock &lobes) {
+  if (scene_.lights.wide_tree().empty())
+    return;
+  LightWalk walks[kBlockLanes];
+  uint32_t lanes[kBlockLanes], count = 0;
+  each_lane(asking, [&](uint32_t lane) {
+    if (choices_.number[lane] != scene_.lights.size() || !(choices_.probability[lane] > 0.0))
+      return;
+    walks[count] = LightTree::walk(query_of(surfaces, lobes, lane), choices_.rest[lane]);
+    lanes[count++] = lane;
+  });
+  scene_.lights.wide_tree().choose({walks, count});
+  for (uint32_t i = 0; i < count; ++i) {
+    choices_.number[lanes[i]] = walks[i].number;
+    choices_.probability[lanes[i]] *= walks[i].probability;
+    choices_.rest[lanes[i]] = walks[i].u;
+  }
+}
+
+// Continues the choice in the lanes that have chosen an emitter; lanes with the same emitter choose together. Lanes without a
+// face of positive probability choose no emitter.
+void LightStage::choose_faces(const SurfaceBlock &surfaces, const LobeBlock &lobes) {
+  for (uint32_t lanes = emitters_; lanes != 0;) {
+    const uint32_t light = choices_.number[std::countr_zero(lanes)];
+    LightWalk walks[kBlockLanes];
+    uint32_t of[kBlockLanes], count = 0;
+    for (uint32_t rest = lanes; rest != 0; rest &= rest - 1)
+      if (const uint32_t lane = uint32_t(std::countr_zero(rest)); choices_.number[lane] == light)
+        of[count++] = lane;
+    const Emitter &emitter = emitter_of(of[0]);
+    if (emitter.faces()) {
+      const Instance &placed = scene_.geometry.instances[emitter.instance()];
+      for (uint32_t i = 0; i < count; ++i)
+        walks[i] = emitter.faces()->walk(placed, query_of(surfaces, lobes, of[i]), choices_.rest[of[i]]);
+      emitter.faces()->choose({walks, count});
+    }
+    for (uint32_t i = 0; i < count; ++i) {
+      face_[of[i]] = emitter.faces() ? walks[i].number : 0;
+      if (emitter.faces())
+        choices_.probability[of[i]] *= walks[i].probability;
+      lanes &= ~(1u << of[i]);
+      if (!(choices_.probability[of[i]] > 0.0))
+        emitters_ &= ~(1u << of[i]);
+    }
+  }
+}
+
+void LightStage::sample(uint32_t light, uint32_t lanes, const Doubles (&p)[3], const VertexNumbers &numbers) {
+  begin();
+  const LightSet &lights = scene_.lights;
+  std::fill_n(choices_.number, kBlockLanes, light);
+  std::fill_n(choices_.probability, kBlockLanes, 1.0);
+  std::fill_n(samples_.hidden, kBlockLanes, lights.hidden_from(light));
+  if (light < lights.lights().size()) {
+    const Light &lamp = lights.lights()[light];
+    samples_.far = lamp.kind == LightKind::Sun ? lanes : 0;
+    return kernel_.sample_lamp(lamp, p, numbers, lanes, samples_);
+  }
+  if (light == lights.environment_light()) {
+    skies_ = lanes;
+    for (uint32_t rest = lanes; rest != 0; rest &= rest - 1)
+      sky_.set_path(uint32_t(std::countr_zero(rest)), {}, nullptr);
+    return sample_sky(numbers, 0);
+  }
+  // Choose the faces by power; the rest of the random number places the point on the face.
+  emitters_ = lanes;
+  for (uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
+    const uint32_t lane = uint32_t(std::countr_zero(rest));
+    if (const auto &faces = emitter_of(lane).faces()) {
+      const auto choice = faces->by_power().sample(numbers.of[kVertexLight][lane]);
+      face_[lane] = choice.index;
+      choices_.probability[lane] = double(choice.pmf);
+      faces_.u[0][lane] = choice.u;
+      faces_.u[1][lane] = numbers.of[kVertexLight + 1][lane];
+    }
+  }
+  sample_faces(p);
+  for (uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
+    const uint32_t lane = uint32_t(std::countr_zero(rest));
+    if (faces_.used >> lane & 1)
+      keep_face(lane, [](uint32_t) { return LightPath<float>{}; });
+    else
+      sample_shape(lane, p, numbers, {});
+  }
+}
+
+// Samples the faces that lanes have chosen; not the lanes that have chosen an exact surface.
+void LightStage::sample_faces(const Doubles (&p)[3]) {
+  faces_.used = 0;
+  for (uint32_t rest = emitters_; rest != 0; rest &= rest - 1) {
+    const uint32_t lane = uint32_t(std::countr_zero(rest));
+    const Emitter &emitter = emitter_of(lane);
+    if (!emitter.faces())
+      continue;
+    const Instance &placed = scene_.geometry.instances[emitter.instance()];
+    const Mesh &mesh = scene_.geometry.meshes[placed.mesh];
+    if (faces_.used == 0)
+      std::fill_n(faces_.placement, kBlockLanes, placed.placement());
+    faces_.used |= 1u << lane;
+    faces_.placement[lane] = placed.placement();
+    for (int corner = 0; corner < 3; ++corner)
+      put(mesh.vertex(face_[lane], corner), faces_.corner[corner], lane);
+  }
+  if (faces_.used == 0)
+    return;
+  for (int axis = 0; axis < 3; ++axis)
+    std::copy_n(p[axis], kBlockLanes, faces_.p[axis]);
+  kernel_.sample_faces(faces_);
+}
+
+glm::vec3 LightStage::face_emission(uint32_t lane, LightPath<float> path) {
+  Hit hit;
+  hit.instance = emitter_of(lane).instance();
+  hit.primitive = face_[lane];
+  hit.u = faces_.weights[0][lane];
+  hit.v = faces_.weights[1][lane];
+  const Surface surface = surface_at(scene_.geometry, scene_.slots, Ray{}, hit);
+  path.length = float(glm::length(surface.p - get(faces_.p, lane)) / scene_.normalisation.scale);
+  return emission_(surface, glm::vec3(-get(faces_.wi, lane)), path);
+}
+
+void LightStage::store_face(uint32_t lane, const glm::vec3 &radiance) {
+  if (!(faces_.pdf[lane] > 0.0))
+    return;
+  put(get(faces_.wi, lane), samples_.wi, lane);
+  put(get(faces_.target, lane), samples_.target, lane);
+  put(radiance, samples_.radiance, lane);
+  samples_.distance[lane] = faces_.distance[lane];
+  samples_.pdf[lane] = faces_.pdf[lane] * choices_.probability[lane];
+}
+
+// Samples an exact surface that emits.
+void LightStage::sample_shape(uint32_t lane, const Doubles (&p)[3], const VertexNumbers &numbers, LightPath<float> path) {
+  const glm::dvec3 from = get(p, lane);
+  Surface surface;
+  const LightSample light = emitter_of(lane).sample_shape(
+      scene_.geometry, scene_.slots, from, {numbers.of[kVertexLight][lane], numbers.of[kVertexLight + 1][lane]}, surface);
+  if (!(light.pdf > 0.0))
+    return;
+  path.length = float(glm::length(surface.p - from) / scene_.normalisation.scale);
+  put(light.wi, samples_.wi, lane);
+  put(light.target, samples_.target, lane);
+  put(emission_(surface, glm::vec3(-light.wi), path), samples_.radiance, lane);
+  samples_.distance[lane] = light.distance;
+  samples_.pdf[lane] = light.pdf * choices_.probability[lane];
+}
+
+// transmits: bits of the lanes whose surfaces transmit light.
+void LightStage::sample_sky(const VertexNumbers &numbers, uint32_t transmits) {
+  if (skies_ == 0)
+    return;
+  for (const bool through : {false, true}) {
+    uint32_t rest = skies_ & (through ? transmits : ~transmits);
+    if (rest == 0)
+      continue;
+    for (int i = 0; i < 2; ++i)
+      std::copy_n(numbers.of[kVertexLight + i], kBlockLanes, directions_.u[i]);
+    sky_.sample(directions_, through);
+    for (; rest != 0; rest &= rest - 1) {
+      const uint32_t lane = uint32_t(std::countr_zero(rest));
+      put(get(directions_.wi, lane), samples_.wi, lane);
+      samples_.pdf[lane] = choices_.probability[lane] * directions_.pdf[lane];
+    }
+  }
+  samples_.far |= skies_;
+  sky_.look(samples_.wi, skies_);
+  each_lane(skies_, [&](uint32_t lane) { put(sky_.radiance(lane), samples_.radiance, lane); });
+}
+
+} // namespace lancer

@@ -1,0 +1,160 @@
+// Light samples of vertices, in lanes: the choice of a light, a point of the light, and the light that arrives from there
+// unless a surface occludes it.
+//
+// In: surfaces, their lobes and numbers, from an integrator. Out: LightSamples, for the integrator; LitBlock, for the shadow
+// stage. Lengths are in the normalised world, densities per solid angle.
+#pragma once
+
+#include "integrator/stages/numbers.h"
+#include "integrator/stages/sky.h"
+#include "integrator/stages/surface.h"
+#include "lights/emission.h"
+#include "lights/light_choice.h"
+
+namespace lancer {
+
+// As LightChoice.
+struct alignas(64) LightChoices {
+  Words number;
+  Doubles probability, rest;
+};
+
+// As LightSample; pdf includes the probability of the choice, 0: no sample.
+struct alignas(64) LightSamples {
+  Doubles wi[3], target[3], distance, pdf;
+  Floats radiance[3];
+  Words delta, hidden; // hidden: LANCER_RAY_* bits of the rays that do not see the light
+  uint32_t far = 0;    // bits of lanes: the light is at infinity
+};
+
+// One face of an emitting mesh for each lane, and the sample that a point takes of it.
+struct alignas(64) FaceBlock {
+  // In: the mesh's placement as Instance::placement(), the face's corners in object space, the shaded point, two numbers.
+  const double *placement[kBlockLanes];
+  Floats corner[3][3]; // by corner, axis
+  Doubles p[3];
+  Floats u[2];
+  uint32_t used = 0; // bits of lanes
+  // Out: the sample, as LightSample; its weights of corners 1 and 2; the face's normal, outwards.
+  alignas(64) Doubles wi[3], target[3], distance, pdf, weights[2];
+  Floats ng[3];
+};
+
+// The light of the samples without occlusion, for the bits lit. Shadow rays begin at their origin, on the side of their
+// direction.
+struct alignas(64) LitBlock {
+  Floats contribution[3];
+  Floats share[2][3]; // diffuse and glossy share, where shares are wanted
+  Doubles origin[3];
+  uint32_t lit = 0;    // bits of lanes
+  uint32_t lifted = 0; // bits of lanes: the shadow ray may have to start on the curved surface
+};
+
+// The vertices to light. beta: throughput from the vertex to the camera; count: number of lights sampled at the vertex.
+struct LitVertices {
+  const SurfaceBlock &surfaces;
+  const LobeBlock &lobes;
+  const Floats (&beta)[3];
+  const Doubles &count;
+};
+
+// Segments of rays that hit a light, as LightHit, and the probability with which the last scattering chose the light.
+struct alignas(64) MetBlock {
+  Doubles pdf, distance, chosen;
+  Floats radiance[3];
+};
+
+struct LightKernel {
+  // Chooses a light of LightSet::binary_tree() for each lane.
+  void (*choose)(const SurfaceBlock &surfaces, const LobeBlock &lobes, const VertexNumbers &numbers, const LightNodes &tree,
+                 LightChoices &choices);
+  // Sample a lamp for each of these lanes, or one lamp in all of them; the other lanes stay as they are. probability: of the
+  // choice.
+  void (*sample_lamps)(const Light *const *lamps, const Doubles (&p)[3], const VertexNumbers &numbers,
+                       const Doubles &probability, uint32_t lanes, LightSamples &samples);
+  void (*sample_lamp)(const Light &lamp, const Doubles (&p)[3], const VertexNumbers &numbers, uint32_t lanes,
+                      LightSamples &samples);
+  void (*sample_faces)(FaceBlock &block);
+  // sample_sky samples directions of the environment from the numbers u; sky_density computes the density of given directions.
+  void (*sample_sky)(const DirectionTable &map, SkyBlock &block);
+  void (*sky_density)(const DirectionTable &map, SkyBlock &block);
+  void (*light)(const LitVertices &vertices, const LightSamples &samples, LitBlock &lit);
+  // Returns the bits of the lanes that may hit the light; other lanes miss it.
+  uint32_t (*meets)(const SegmentBlock &segments, const Light &light);
+  // Computes the light that lanes get when they hit it; place: of the light in the tree.
+  void (*meet)(const SegmentBlock &segments, const Light &light, const LightNodes &tree, uint32_t place, MetBlock &met);
+};
+LANCER_DECLARE_KERNEL(LightKernel, light_kernel)
+
+// One object per thread.
+class LightStage {
+public:
+  LightStage(const Scene &scene, const Camera *camera);
+
+  // Chooses a light for each of these lanes and samples it. path(lane): returns the Light Path values of the vertex.
+  template <class PathOf>
+  void ask(uint32_t lanes, const SurfaceBlock &surfaces, const LobeBlock &lobes, const VertexNumbers &numbers, PathOf &&path) {
+    choose(lanes, surfaces, lobes, numbers);
+    if (lamps_ != 0)
+      kernel_.sample_lamps(lamp_, surfaces.p, numbers, choices_.probability, lamps_, samples_);
+    sample_faces(surfaces.p);
+    each_lane(emitters_, [&](uint32_t lane) {
+      if (faces_.used >> lane & 1)
+        keep_face(lane, path);
+      else
+        sample_shape(lane, surfaces.p, numbers, path(lane));
+    });
+    each_lane(skies_, [&](uint32_t lane) {
+      LightPath<float> of_lane = path(lane);
+      of_lane.length = std::numeric_limits<float>::max();
+      sky_.set_path(lane, of_lane, nullptr);
+    });
+    sample_sky(numbers, lobes.transmits);
+  }
+  // Samples this light in all of these lanes, seen from p; an emitter's face by its power. The nodes of the light see no path.
+  void sample(uint32_t light, uint32_t lanes, const Doubles (&p)[3], const VertexNumbers &numbers);
+  // Computes the light of the samples that is not occluded.
+  void light(const LitVertices &vertices) { kernel_.light(vertices, samples_, lit_); }
+
+  const LightSamples &samples() const { return samples_; }
+  const LitBlock &lit() const { return lit_; }
+  // Returns the light that a lane has chosen.
+  uint32_t chosen(uint32_t lane) const { return choices_.number[lane]; }
+
+private:
+  void choose(uint32_t lanes, const SurfaceBlock &surfaces, const LobeBlock &lobes, const VertexNumbers &numbers);
+  void begin();
+  void choose_of_many(uint32_t lanes, const SurfaceBlock &surfaces, const LobeBlock &lobes);
+  void choose_faces(const SurfaceBlock &surfaces, const LobeBlock &lobes);
+  void sample_faces(const Doubles (&p)[3]);
+  // Stores the sample of a face with the light that its point emits.
+  template <class PathOf> void keep_face(uint32_t lane, PathOf &&path) {
+    const uint32_t number = material_of(scene_.geometry, scene_.slots, emitter_of(lane).instance(), face_[lane]);
+    if (number == kNone)
+      return;
+    const Material &material = scene_.materials[number];
+    store_face(lane, emission_varies(material) ? face_emission(lane, path(lane)) : material.emission.value);
+  }
+  void store_face(uint32_t lane, const glm::vec3 &radiance);
+  glm::vec3 face_emission(uint32_t lane, LightPath<float> path);
+  void sample_shape(uint32_t lane, const Doubles (&p)[3], const VertexNumbers &numbers, LightPath<float> path);
+  void sample_sky(const VertexNumbers &numbers, uint32_t transmits);
+  const Emitter &emitter_of(uint32_t lane) const {
+    return scene_.lights.emitters()[choices_.number[lane] - scene_.lights.lights().size()];
+  }
+
+  const Scene &scene_;
+  const LightKernel &kernel_;
+  EmissionAt emission_;
+  SkyStage sky_;
+  LightChoices choices_{};
+  const Light *lamp_[kBlockLanes];
+  Words face_;                                    // of the chosen emitter
+  uint32_t lamps_ = 0, emitters_ = 0, skies_ = 0; // lanes that have chosen these
+  SkyBlock directions_{};
+  FaceBlock faces_{};
+  LightSamples samples_{};
+  LitBlock lit_{};
+};
+
+} // namespace lancer

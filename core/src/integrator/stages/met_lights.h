@@ -1,0 +1,70 @@
+// Light that rays run into: lamps on their way, surfaces that emit, the environment behind all surfaces.
+//
+// In: rays, their hits, and the last scatterings of their paths, from the integrator. Out: radiance towards the ray's origin,
+// and the weight of BSDF sampling against light sampling, which may have found the same light.
+#pragma once
+
+#include "integrator/stages/light.h"
+#include "integrator/stages/sky.h"
+
+namespace lancer {
+
+// The last scattering of a path, from which light samples compete with the path's ray.
+struct Scattering {
+  glm::dvec3 p{0.0};
+  glm::vec3 n{0.0f};      // shading normal
+  bool transmits = false; // light may pass the surface
+  double pdf = 0.0;       // of the BSDF sample that gave the ray; 0 after the camera or a single direction
+  double passed = 0.0;    // distance to the ray's origin, through transparent surfaces
+
+  LightQuery query() const { return LightQuery(p, n, transmits); }
+};
+
+// A lamp on the way of a ray.
+struct MetLight {
+  size_t ray;
+  uint32_t light;
+  glm::vec3 radiance;
+  float weight;
+};
+
+class MetLights {
+public:
+  MetLights(const Scene &scene, const Camera &camera) : scene_(scene), kernel_(light_kernel()), sky_(scene, &camera) {}
+
+  // Returns all lamps that the rays pass before they end, for lights occlude nothing; valid until the next call.
+  std::span<const MetLight> find(std::span<const Ray> rays, std::span<const Hit> hits, std::span<const Scattering> from);
+  // Returns the weight of the emission of a surface that a ray has hit.
+  float emission_weight(const Scattering &from, const Surface &surface) const;
+
+  // The environment in the directions of rays that hit nothing: add the rays lane by lane, look, then read the results. path:
+  // Light Path of the ray; eye: where a camera ray begins, null for any other ray.
+  void add_miss(uint32_t lane, const glm::dvec3 &d, LightPath<float> path, const glm::dvec3 *eye);
+  void look_at_sky(uint32_t count);
+  glm::vec3 sky_radiance(uint32_t lane) const { return sky_.radiance(lane); }
+  float sky_weight(uint32_t lane, const Scattering &from) const;
+
+private:
+  void meet_lamp(size_t first, uint32_t lanes, uint32_t light);
+  void meet_alone(size_t ray, uint32_t light);
+  bool is_on_segment(size_t ray, const LightHit &hit) const;
+  void keep(size_t ray, uint32_t light, const LightHit &hit, double chosen);
+  double end_of(size_t ray) const {
+    return from_[ray].passed + std::min(hits_[ray].t, rays_[ray].tmax) * glm::length(rays_[ray].d);
+  }
+
+  const Scene &scene_;
+  const LightKernel &kernel_;
+  SkyStage sky_;
+  // Of the last batch.
+  std::span<const Ray> rays_;
+  std::span<const Hit> hits_;
+  std::span<const Scattering> from_;
+  std::vector<MetLight> met_;
+  SegmentBlock segments_{};
+  MetBlock block_{};
+  SkyBlock misses_{};
+  Doubles density_[2] = {}; // of the misses, by Scattering::transmits
+};
+
+} // namespace lancer

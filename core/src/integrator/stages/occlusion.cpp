@@ -1,0 +1,52 @@
+#include "integrator/stages/occlusion.h"
+
+#include "integrator/stages/terminator.h"
+
+#include <limits>
+
+namespace lancer {
+
+const OcclusionKernel &occlusion_kernel() { return LANCER_CHOSEN_SHADING_KERNEL(occlusion_kernel); }
+
+OcclusionStage::OcclusionStage(const Scene &scene, const IntegratorSettings &settings)
+    : kernel_(occlusion_kernel()), scene_(scene),
+      reach_(settings.occlusion_distance > 0.0 ? settings.occlusion_distance * scene.normalisation.scale
+                                               : std::numeric_limits<double>::infinity()),
+      next_rays_look_(!(scene.features & (kFeatureTransparency | kFeatureVisibility))) {}
+
+OcclusionStage::Open OcclusionStage::send(uint32_t lane, const SurfaceStage &surfaces, const ScatterBlock &next, uint32_t slot,
+                                          const glm::vec3 &weight, uint32_t passed, const LightPath<float> &path,
+                                          ShadowStage &shadows) const {
+  const Surface surface = surfaces.surface(lane);
+  const glm::vec3 ns = get(surfaces.lobes().ns, lane), ng = get(surfaces.lobes().ng, lane);
+  const auto push = [&](const glm::vec3 &wi, const glm::vec3 &share) {
+    LightSample around;
+    around.wi = glm::dvec3(wi);
+    around.distance = std::numeric_limits<double>::infinity();
+    // Like a shadow ray, the occlusion ray starts on the curved surface of a smooth mesh.
+    Ray ray = shadow_ray(scene_.geometry, surface, ns, ng, around);
+    ray.tmax = reach_;
+    shadows.push(ray, {.slot = slot, .occlusion = true}, share, passed);
+    if (shadows.asks_light_path())
+      shadows.set_light_path(path);
+  };
+  Open open;
+  if (around_.by_itself >> lane & 1)
+    push(get(around_.wi, lane), weight);
+  else
+    open.share[0] = weight;
+  if (!(around_.by_next >> lane & 1))
+    return open;
+  const glm::vec3 wi = get(next.wi, lane);
+  const float occlusion = around_.weight[lane];
+  if (next.sampled >> lane & 1 && terminator_offset(scene_.geometry, surface, ns, ng, wi) == glm::dvec3(0.0)) {
+    open.by_next = occlusion;
+    return open;
+  }
+  // A next ray without weight is not traced, and a next ray near the terminator starts elsewhere. Both need an occlusion ray.
+  open.share[1] = -glm::vec3(occlusion);
+  push(wi, glm::vec3(occlusion));
+  return open;
+}
+
+} // namespace lancer

@@ -1,0 +1,69 @@
+#include "integrator/stages/shader.h"
+
+#include "bsdf/material_lobes.h"
+
+#include <algorithm>
+
+namespace lancer {
+
+void Shader::shade(const Surface &surface, const View &view, Shaded &result) {
+  result.transmittance = glm::vec3(0.0f);
+  result.material = surface.material == kNone ? nullptr : &scene_.materials[surface.material];
+  static const Material nothing;
+  const Material *const material = result.material ? result.material : &nothing;
+  // Evaluate the nodes, then build the lobes as seen from wo.
+  nodes_.run(material->program, material->surface_nodes, surface, view);
+  find_lobes<float>(&material, PlaceValues{nodes_.values()}, false, view.wo, surface.ns, surface.ng, result.bsdf);
+  result.emission = nodes_.value(material->emission) + result.bsdf.emission;
+  if (material->transmits())
+    result.transmittance = glm::max(nodes_.value(material->transmittance), 0.0f);
+}
+
+glm::vec3 Shader::transmittance(const Ray &ray, const Hit &hit, const LightPath<float> &path) {
+  const uint32_t number = material_of(scene_.geometry, scene_.slots, hit.instance, hit.primitive);
+  if (number == kNone)
+    return glm::vec3(0.0f);
+  const Material &material = scene_.materials[number];
+  if (!material.transmits() || (material.flags & LANCER_MATERIAL_OPAQUE_SHADOWS))
+    return glm::vec3(0.0f);
+  // Use the cheapest evaluation that suffices.
+  if (!material.transmittance.varies())
+    return glm::max(material.transmittance.value, 0.0f);
+  const Instance &instance = scene_.geometry.instances[hit.instance];
+  const Cutout &cutout = scene_.cutouts[number];
+  const bool on_mesh = instance.kind == ShapeKind::Mesh;
+  if (on_mesh && cutout.alpha.known())
+    return glm::vec3(glm::max(
+        1.0f - alpha_at(cutout.alpha, scene_.images, scene_.geometry.meshes[instance.mesh], hit.primitive, {hit.u, hit.v}),
+        0.0f));
+  if (on_mesh && cutout.painted) {
+    nodes_.run_painted(material.program, material.transmittance_nodes, hit);
+  } else {
+    const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hit);
+    nodes_.run(material.program, material.transmittance_nodes, surface,
+               {.wo = glm::vec3(-glm::normalize(ray.d)), .path = path});
+  }
+  return glm::max(nodes_.value(material.transmittance), 0.0f);
+}
+
+bool Shader::is_there(uint32_t number, const Hit &hit) {
+  const Material &material = scene_.materials[number];
+  const Cutout &cutout = scene_.cutouts[number];
+  if (cutout.ends_with_alpha) {
+    const Mesh &mesh = scene_.geometry.meshes[scene_.geometry.instances[hit.instance].mesh];
+    return alpha_at(cutout.alpha, scene_.images, mesh, hit.primitive, {hit.u, hit.v}) != 0.0f;
+  }
+  nodes_.run_painted(material.program, cutout.nodes, hit);
+  const auto none = [&](const LobeDescription &lobe) { return evaluate(lobe.weight, nodes_.values()) == glm::vec3(0.0f); };
+  return nodes_.value(material.transmittance) != glm::vec3(1.0f) || !std::ranges::all_of(material.lobes, none);
+}
+
+glm::vec4 Shader::node_value(const Surface &surface, uint32_t node, const glm::vec3 &wo) {
+  const Material &material = scene_.materials[surface.material];
+  Parameter parameter;
+  parameter.node = int32_t(node);
+  nodes_.run(material.program, material.program.schedule(std::span(&parameter, 1)), surface, {.wo = wo});
+  return nodes_.values()[node];
+}
+
+} // namespace lancer

@@ -1,0 +1,184 @@
+// From hits to surfaces and their lobes, in lanes.
+//
+// In: rays, their hits, materials of one class, and the views from which nodes see them, from an integrator. Out: the surface
+// and its lobes, for the stages light, scatter and occlusion; emission, transmittance, holes and means of lobes, for the
+// integrator. Lengths are in the normalised world. The steps of a block:
+//
+//   add() each hit, then find(), ask_nodes(), cut_holes(), build_lobes(), describe() where passes need it; clear() at the end.
+#pragma once
+
+#include "integrator/sample.h"
+#include "integrator/stages/lobe_means.h"
+#include "nodes/material_nodes.h"
+#include "simd/block.h"
+
+namespace lancer {
+
+// Hits on triangles and exact surfaces.
+struct alignas(64) HitBlock {
+  const double *placement[kBlockLanes]; // Instance::to_world and the following members
+  Floats corner[3][3], normals[3][3];   // of a triangle's corners, object space; by corner, axis
+  Doubles bary[2], d[3], o[3], t;       // of the ray, d of any length; o and t only for exact surfaces
+  // Each of the following is one bit per lane.
+  uint32_t used = 0;
+  uint32_t on_mesh = 0, smooth = 0; // triangles; those with smooth normals
+  uint32_t exact = 0;               // spheres and the following shapes
+  uint32_t on_plane = 0, on_cylinder = 0, on_cone = 0;
+};
+
+// As Surface, with both normals outwards; wo unit, length: of d, terminator: Instance::terminator.
+struct alignas(64) SurfaceBlock {
+  Doubles p[3], offset, length;
+  Floats ng[3], ns[3], wo[3];
+  Floats terminator;
+};
+
+// The materials at the surfaces, and what their nodes say.
+struct alignas(64) MaterialBlock {
+  const Material *material[kBlockLanes];           // all of one class
+  Floats transmittance[3], through;                // through: its mean
+  const float (*values)[4][kBlockLanes] = nullptr; // of nodes, four floats for every lane
+  uint32_t holes = 0;                              // bits of lanes: lobes are hidden by a hole
+  uint32_t ends = 0;                               // bits of lanes: the path ends here
+  bool shares = false;                             // diffuse and glossy shares of light are wanted
+};
+
+// The lobes, with normals and emission on the viewer's side.
+struct alignas(64) LobeBlock {
+  Floats ns[3], ng[3];
+  Floats emission[3];           // of layers
+  Floats pass;                  // share of paths that pass straight through; the others are scattered
+  std::byte *storage = nullptr; // of the lobes of all lanes: see lobe_lanes.h
+  // Each of the following is one bit per lane.
+  uint32_t used = 0;
+  uint32_t transmits = 0; // light may pass the surface
+  uint32_t scatters = 0;  // into more than single directions
+  bool shares = false;    // as in MaterialBlock
+};
+
+// Means over lobes that passes ask for.
+struct MeansWanted {
+  bool normal = false, matt_normal = false, shown = false, mixture = false;
+  bool blended = false; // Mixture by the rule of Blender 5.2
+};
+struct alignas(64) MeanBlock {
+  Floats normal[3], matt_normal[3]; // mean normals of all lobes and of the diffuse ones
+  Floats shown[3][3];               // colours of the passes, by component
+  Floats mixed_matt, mixed_all, mixed_diffuse[3], mixed_specular[3], mixed_normal[3]; // Mixture of lobe_means.h
+};
+
+struct SurfaceKernel {
+  // Lanes without a shape bit keep their surface, but for wo and length.
+  void (*find)(const HitBlock &hits, SurfaceBlock &surfaces);
+  void (*build)(const SurfaceBlock &surfaces, const MaterialBlock &materials, LobeBlock &lobes);
+  void (*describe)(const MaterialBlock &materials, const LobeBlock &lobes, const MeansWanted &wanted, MeanBlock &means);
+  size_t lobes_bytes;
+};
+LANCER_DECLARE_KERNEL(SurfaceKernel, surface_kernel)
+
+class SurfaceStage {
+public:
+  SurfaceStage(const Scene &scene, const Camera &camera, const IntegratorSettings &settings);
+  SurfaceStage(const SurfaceStage &) = delete; // its blocks have the address of its values
+  SurfaceStage &operator=(const SurfaceStage &) = delete;
+
+  uint32_t count() const { return count_; }
+  bool full() const { return count_ == kBlockLanes; }
+  // Adds a hit to the next lane and returns the lane. All hits of a block have materials of one class; ray and hit must stay in
+  // place until clear(). ends: the path ends here, so that its surface scatters no light.
+  uint32_t add(const Ray &ray, const Hit &hit, const Material &material, bool ends = false);
+  // Replaces the surface of a lane, seen along a view direction of any length.
+  void replace(uint32_t lane, const Surface &surface, const glm::dvec3 &view);
+  // Moves a lane to another place of its triangle.
+  void move(uint32_t lane, const Hit &hit);
+  // Turns a lane to be seen along a view direction of any length.
+  void view_along(uint32_t lane, const glm::dvec3 &view) { put(view, hits_.d, lane); }
+  // Computes the surfaces of all lanes.
+  void find();
+  // Evaluates the nodes of the material, if it has any. view_of(lane): returns the View of a lane.
+  template <class ViewOf> void ask_nodes(ViewOf &&view_of) {
+    if (materials_.material[0]->fixed())
+      return;
+    View views[kBlockLanes];
+    for (uint32_t lane = 0; lane < count_; ++lane)
+      views[lane] = view_of(lane);
+    run_nodes(views);
+  }
+  // Returns the view of a lane at the end of a path of length `way`.
+  View view(uint32_t lane, double way, const LightPath<float> &path) const {
+    return {.wo = get(surfaces_.wo, lane), .footprint = float(cone_.base + way * cone_.spread), .path = path};
+  }
+  // Cuts holdouts out of those lanes that the camera sees: a hole has neither lobes nor emission. Returns bits of lanes: those
+  // that are cut, and those of which nothing is left.
+  struct Holes {
+    uint32_t cut = 0, nothing = 0;
+  };
+  Holes cut_holes(uint32_t seen);
+  // Returns the alpha that a hole takes from a pixel. beta: throughput from the surface to the camera.
+  float cut_alpha(uint32_t lane, const glm::vec3 &beta) const;
+  // Shows all surfaces as opaque.
+  void make_opaque();
+  void build_lobes();
+  // Computes the means of the lobes that passes need.
+  void describe();
+  void clear();
+
+  const SurfaceBlock &surfaces() const { return surfaces_; }
+  const LobeBlock &lobes() const { return lobes_; }
+  const MeanBlock &means() const { return means_; }
+  const Material &material(uint32_t lane) const { return *materials_.material[lane]; }
+  const Ray &ray(uint32_t lane) const { return *ray_of_[lane]; }
+  const Hit &hit(uint32_t lane) const { return *hit_of_[lane]; }
+  const Instance &instance(uint32_t lane) const { return scene_.geometry.instances[hit(lane).instance]; }
+  // Returns the distance from a lane's ray to its hit.
+  double distance(uint32_t lane) const { return hit(lane).t * surfaces_.length[lane]; }
+  Surface surface(uint32_t lane) const;
+  glm::vec3 value(const Parameter &parameter, uint32_t lane) const;
+  // Returns the radiance that a lane emits towards its viewer.
+  glm::vec3 emission(uint32_t lane) const { return emission_[lane] + get(lobes_.emission, lane); }
+  glm::vec3 transmittance(uint32_t lane) const { return transmittance_[lane]; }
+  // Returns 1 minus the transmittance, in 0 ... 1.
+  glm::vec3 opacity(uint32_t lane) const { return glm::clamp(1.0f - transmittance_[lane], 0.0f, 1.0f); }
+  Mixture<float> mixture(uint32_t lane) const;
+  uint32_t holes() const { return materials_.holes; } // bits of lanes
+
+  // The places of a block's lanes, kept while the lanes are elsewhere.
+  struct Places {
+    HitBlock hits;
+    SurfaceBlock surfaces;
+    LobeBlock lobes;
+  };
+  Places places() const { return {hits_, surfaces_, lobes_}; }
+  void go_back(const Places &places);
+
+private:
+  void run_nodes(std::span<const View> views);
+  void place_nodes(const Material &material, std::span<const View> views);
+  void set_transmittance(uint32_t lane, const glm::vec3 &transmittance);
+  float holdout(uint32_t lane) const;
+
+  // Storage of the lobes.
+  struct alignas(64) Bytes {
+    std::byte of[64];
+  };
+
+  const SurfaceKernel &kernel_;
+  const NodeKernel &node_kernel_;
+  const Scene &scene_;
+  PixelCone cone_;
+  const MeansWanted wanted_;
+  uint32_t count_ = 0;
+  const Ray *ray_of_[kBlockLanes];
+  const Hit *hit_of_[kBlockLanes];
+  HitBlock hits_{};
+  SurfaceBlock surfaces_{};
+  MaterialBlock materials_{};
+  LobeBlock lobes_{};
+  MeanBlock means_{};
+  glm::vec3 emission_[kBlockLanes], transmittance_[kBlockLanes]; // of the material
+  NodeBlock nodes_;
+  std::vector<NodeLanes> values_;
+  std::vector<Bytes> storage_;
+};
+
+} // namespace lancer

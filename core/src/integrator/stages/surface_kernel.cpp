@@ -1,0 +1,118 @@
+// Compiled once per instruction set, with LANCER_ISA as its name. This file must emit no shared (weak) symbol: see
+// bvh_kernel.cpp.
+#include "integrator/stages/surface.h"
+
+#include "bsdf/material_lobes.h"
+#include "integrator/stages/lobe_lanes.h"
+#include "integrator/stages/lobe_means.h"
+#include "scene/hit_surface.h"
+
+#include <new>
+
+namespace lancer {
+namespace {
+
+LANCER_LANE void store_surface(SurfaceBlock &block, int first, const SurfaceLanes<F> &surface, M lanes) {
+  store3(block.p, first, lanes, surface.p);
+  store(block.offset + first, lanes, surface.offset);
+  store3(block.ng, first, lanes, surface.ng);
+  store3(block.ns, first, lanes, surface.ns);
+}
+
+[[gnu::flatten]] void find(const HitBlock &hits, SurfaceBlock &surfaces) {
+  for (int first = 0; first < kBlockLanes; first += kLanes) {
+    if (!(hits.used >> first))
+      return;
+    // wo points back along the ray.
+    const D3 d = load3(hits.d, first);
+    const D length = sqrt(dot(d, d));
+    const D scale = D(1.0) / length;
+    store(surfaces.length + first, length);
+    store3(surfaces.wo, first, narrow(D3{-(d.x * scale), -(d.y * scale), -(d.z * scale)}));
+    const M on_mesh = some(hits.on_mesh, first), exact = some(hits.exact, first);
+    const Placements<F> placed(hits.placement + first);
+    if (any(on_mesh)) {
+      V3 v[3], n[3];
+      for (int corner = 0; corner < 3; ++corner) {
+        v[corner] = load3(hits.corner[corner], first);
+        n[corner] = load3(hits.normals[corner], first);
+      }
+      const SurfaceLanes<F> surface =
+          triangle_surface(placed, v, n, some(hits.smooth, first), load(hits.bary[0] + first), load(hits.bary[1] + first));
+      store_surface(surfaces, first, surface, on_mesh);
+    }
+    if (any(exact)) {
+      const QuadricKinds<F> kinds{some(hits.on_plane, first), some(hits.on_cylinder, first), some(hits.on_cone, first)};
+      store_surface(surfaces, first, quadric_surface(placed, kinds, load3(hits.o, first), d, load(hits.t + first)), exact);
+    }
+  }
+}
+
+// Values of the material's nodes in every lane.
+struct NodeValues {
+  const MaterialBlock &block;
+  int first;
+  LANCER_LANE V3 operator()(const Parameter &parameter) const {
+    if (!parameter.varies())
+      return V3(parameter.value);
+    return load3(block.values[parameter.node], first);
+  }
+};
+
+// Returns the share of paths that pass straight through instead of being scattered.
+LANCER_LANE F share_passing(const MaterialBlock &materials, int first, const Bsdf<F> &bsdf) {
+  const F zero(0.0f), through = load(materials.through + first);
+  const M passes = through > zero;
+  if (!any(passes))
+    return zero;
+  return select(passes, through / (through + select(some(materials.ends, first), zero, mean(bsdf.albedo()))), zero);
+}
+
+void build(const SurfaceBlock &surfaces, const MaterialBlock &materials, LobeBlock &lobes) {
+  lobes.transmits = lobes.scatters = 0;
+  lobes.shares = materials.shares;
+  for (int first = 0; first < kBlockLanes; first += kLanes) {
+    if (!(lobes.used >> first))
+      return;
+    Bsdf<F> &bsdf = *new (&lobes_of(lobes, first)) Bsdf<F>;
+    bsdf.shares = materials.shares;
+    find_lobes<F>(materials.material + first, NodeValues{materials, first}, some(materials.holes, first),
+                  load3(surfaces.wo, first), load3(surfaces.ns, first), load3(surfaces.ng, first), bsdf);
+    store3(lobes.ns, first, bsdf.ns);
+    store3(lobes.ng, first, bsdf.ng);
+    store3(lobes.emission, first, bsdf.emission);
+    store(lobes.pass + first, share_passing(materials, first, bsdf));
+    lobes.transmits |= placed_bits(bsdf.transmits, first);
+    lobes.scatters |= placed_bits(bsdf.smooth, first);
+  }
+}
+
+void describe(const MaterialBlock &materials, const LobeBlock &lobes, const MeansWanted &wanted, MeanBlock &means) {
+  for (int first = 0; first < kBlockLanes; first += kLanes) {
+    if (!(lobes.used >> first))
+      return;
+    const Bsdf<F> &bsdf = lobes_of(lobes, first);
+    if (wanted.normal)
+      store3(means.normal, first, mean_normal(bsdf));
+    if (wanted.matt_normal)
+      store3(means.matt_normal, first, mean_normal(bsdf, true));
+    for (int component = 0; component < 3 && wanted.shown; ++component)
+      store3(means.shown[component], first, bsdf.shown(static_cast<Component>(component)));
+    if (!wanted.mixture)
+      continue;
+    const Mixture<F> mixture = mix(bsdf, load3(materials.transmittance, first), some(materials.ends, first), wanted.blended);
+    store3(means.mixed_normal, first, mixture.normal);
+    store3(means.mixed_diffuse, first, mixture.diffuse);
+    store3(means.mixed_specular, first, mixture.specular);
+    store(means.mixed_all + first, mixture.all);
+    store(means.mixed_matt + first, mixture.matt);
+  }
+}
+
+} // namespace
+
+namespace LANCER_ISA {
+const SurfaceKernel surface_kernel = {find, build, describe, kBlockLanes / kLanes * sizeof(Bsdf<F>)};
+}
+
+} // namespace lancer
