@@ -1,8 +1,8 @@
 """Generates the interface's numbers and structs in Python, and the core's table of parameters, from the C header.
 
-    bindings.py                writes addon/bindings/enums.py and structs.py and core/src/scene/principled_table.h, from
-                               core/include/lancer.h
-    bindings.py HEADER FOLDER  reads another header and writes all files into another folder
+    bindings.py         writes addon/bindings/enums.py and structs.py, core/src/scene/principled_table.h and
+                        core/src/integrator/settings_table.h, from core/include/lancer.h and lancer_probes.h
+    bindings.py FOLDER  writes all files into another folder
 
 The parser relies on the plain style of the header: an enum is named lancer_something, or by the typedef on the line above it; a
 struct has one kind of member on a line. Names follow by rule:
@@ -11,6 +11,8 @@ struct has one kind of member on a line. Names follow by rule:
   - An enum without 0 has bits, and is an IntFlag.
   - Where comments of members begin with [n], as those of passes do, n is the number of channels.
   - Where they begin with [kind number], as those of parameters do, these are the parameter's kind and default.
+  - Where they begin with [kind number most], as those of settings may, most is the largest value.
+  - A #define of a plain number is a constant.
 """
 
 import re
@@ -19,9 +21,9 @@ import textwrap
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-HEADER = ROOT / "core" / "include" / "lancer.h"
+HEADERS = [ROOT / "core" / "include" / name for name in ("lancer.h", "lancer_probes.h")]
 FOLDER = ROOT / "addon" / "bindings"
-TABLE = ROOT / "core" / "src" / "scene"
+CORE = ROOT / "core" / "src"
 WIDTH = 128
 
 HEAD = '''"""{what}
@@ -40,6 +42,8 @@ ENUM = re.compile(
 STRUCT = re.compile(COMMENT + r"typedef struct lancer_(?P<name>\w+) \{\n(?P<body>.*?)\n\} lancer_(?P=name);", re.DOTALL)
 VALUE = re.compile(r"(LANCER_\w+)(?: = (\d+))?,?(?:\s*\[(\d)\])?")
 PARAMETER = re.compile(r"lancer_parameter (?P<name>\w+); +/\* \[(?P<kind>\w+) (?P<default>[\d.]+)\]")
+SETTING = re.compile(r"(?:uint32_t|float) (?P<name>\w+); +/\* \[(?P<kind>\w+) (?P<default>[\d.]+)(?: (?P<most>\d+))?\]")
+CONSTANT = re.compile(r"#define LANCER_(\w+) (\d+)u")
 VECTORS = ("color", "direction", "vector")
 MEMBER = re.compile(r"(?P<const>const )?(?P<type>\w+) (?P<names>[^;]+);")
 
@@ -86,7 +90,7 @@ def shortened(names):
 def enum_class(match):
     name = match["name"] or match["typedef"]
     if not name:
-        sys.exit(f"An enum of {HEADER.name} has no name: {match['body'].split()[0]}")
+        sys.exit(f"An enum of lancer.h has no name: {match['body'].split()[0]}")
     members = values(match["body"])
     kind = "IntEnum" if any(value == 0 for _, value, _ in members) else "IntFlag"
     lines = [f"class {class_name(name)}({kind}):", *docstring(match["comment"])]
@@ -124,10 +128,10 @@ def struct_class(match):
 
 
 def enums_text(header):
-    version = re.search(r"#define LANCER_ABI_VERSION (\d+)u", header)[1]
+    constants = "\n".join(f"{name} = {value}" for name, value in CONSTANT.findall(header))
     classes = [enum_class(match) for match in ENUM.finditer(header)]
     head = HEAD.format(what="The numbers of the interface.")
-    return "\n\n\n".join([f"{head}\nfrom enum import IntEnum, IntFlag\n\nABI_VERSION = {version}", *classes]) + "\n"
+    return "\n\n\n".join([f"{head}\nfrom enum import IntEnum, IntFlag\n\n{constants}", *classes]) + "\n"
 
 
 def parameters(body):
@@ -151,14 +155,49 @@ def table_text(header):
     for name, kind, default in parameters(body):
         spoken = name.replace("_", " ").replace("color", "colour").replace("ior", "IOR")
         rows.append(f'  X({kind.capitalize()}, {name}, "{spoken}", {default}f)')
-    # The layout of clang-format.
-    table = "".join(f"{row:<{WIDTH - 1}}\\\n" for row in rows[:-1]) + rows[-1]
     return f"""// The parameters of lancer_principled: X(kind, member, name for artists, default).
 // Generated from core/include/lancer.h by `make bindings`; changes here are lost.
 #pragma once
 
-{table}
+{c_macro(rows)}
 """
+
+
+def settings(header):
+    """Returns (name, kind, default, most) of the members of lancer_settings, as their comments state them; most may be None."""
+    body = next(match["body"] for match in STRUCT.finditer(header) if match["name"] == "settings")
+    found = [match.group("name", "kind", "default", "most") for match in SETTING.finditer(body)]
+    if [name for name, *_ in found] != [name for name, _ in fields(body)]:
+        sys.exit("A member of lancer_settings lacks its [kind default] in the comment.")
+    return found
+
+
+def settings_text(header):
+    """Returns the settings for the core: kind, member, default, largest value."""
+    rows = ["#define LANCER_SETTINGS(X)"]
+    for name, kind, default, most in settings(header):
+        given = f"{float(default)}f" if kind in ("amount", "width") else {"switch": "false"}.get(kind, f"{default}u")
+        rows.append(f"  X({kind.capitalize()}, {name}, {given}, {most or '0xffffffff'}u)")
+    return f"""// The members of lancer_settings: X(kind, member, default, largest value).
+// Generated from core/include/lancer.h by `make bindings`; changes here are lost.
+#pragma once
+
+{c_macro(rows)}
+"""
+
+
+def c_macro(rows):
+    """Returns the lines of a macro in the layout of clang-format."""
+    return "".join(f"{row:<{WIDTH - 1}}\\\n" for row in rows[:-1]) + rows[-1]
+
+
+def settings_lines(header):
+    """Returns the lines of the settings for Python."""
+    lines = ["# Kind and default of each setting, from lancer.h.", "SETTINGS = {"]
+    for name, kind, default, _ in settings(header):
+        value = {"amount": float, "width": float, "switch": lambda text: text != "0"}.get(kind, int)(default)
+        lines.append(f'    "{name}": ("{kind}", {value}),')
+    return [*lines, "}"]
 
 
 def structs_text(header):
@@ -166,7 +205,7 @@ def structs_text(header):
     listed = next(match for match in ENUM.finditer(header) if match["name"] == "struct")
     numbered = shortened([name for name, _, _ in values(listed["body"])])
     if {name.upper() for name in found} != set(numbered):
-        sys.exit(f"lancer_struct and the structs of {HEADER.name} differ: {sorted({n.upper() for n in found} ^ set(numbered))}")
+        sys.exit(f"lancer_struct and the structs of lancer.h differ: {sorted({n.upper() for n in found} ^ set(numbered))}")
     classes = [struct_class(match) for match in found.values()]
     described = [name for name, match in found.items() if parameters(match["body"])]
     for name in described:
@@ -184,16 +223,25 @@ def structs_text(header):
         "Array = c_void_p",
     ]
     table = ["STRUCTS = {", *(f"    Struct.{name}: {class_name(name)}," for name in numbered), "}"]
-    return "\n\n\n".join(["\n".join(head), *classes, "\n".join(table)]) + "\n\n" + "\n".join(kinds) + "\n"
+    return (
+        "\n\n\n".join(["\n".join(head), *classes, "\n".join(table)])
+        + "\n\n"
+        + "\n".join([*kinds, "", *settings_lines(header)])
+        + "\n"
+    )
 
 
-def main(header=HEADER, folder=FOLDER, table=None):
+def main(folder=None):
     # Remove directives for the formatter, which separate comments from their declarations.
-    text = re.sub(r"/\* clang-format \w+ \*/\n", "", Path(header).read_text(encoding="utf-8"))
-    (Path(folder) / "enums.py").write_text(enums_text(text), encoding="utf-8")
-    (Path(folder) / "structs.py").write_text(structs_text(text), encoding="utf-8")
-    (Path(table or folder) / "principled_table.h").write_text(table_text(text), encoding="utf-8")
+    text = re.sub(r"/\* clang-format \w+ \*/\n", "", "".join(header.read_text(encoding="utf-8") for header in HEADERS))
+    for place, name, made in (
+        (FOLDER, "enums.py", enums_text),
+        (FOLDER, "structs.py", structs_text),
+        (CORE / "scene", "principled_table.h", table_text),
+        (CORE / "integrator", "settings_table.h", settings_text),
+    ):
+        (Path(folder or place) / name).write_text(made(text), encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:]) if sys.argv[1:] else main(table=TABLE)
+    main(*sys.argv[1:])

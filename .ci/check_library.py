@@ -31,7 +31,7 @@ def said(*command):
 
 def declared():
     """Returns the names of the C interface."""
-    text = (ROOT / "core/include/lancer.h").read_text()
+    text = "".join((ROOT / "core/include" / name).read_text() for name in ("lancer.h", "lancer_probes.h"))
     return set(re.findall(r"^LANCER_API [^;(]*?\b(lancer_\w+)\(", text, re.MULTILINE))
 
 

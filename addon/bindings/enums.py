@@ -5,7 +5,9 @@ Generated from core/include/lancer.h by `make bindings`; changes here are lost.
 
 from enum import IntEnum, IntFlag
 
-ABI_VERSION = 7
+ABI_VERSION = 8
+MOST_NODES = 4096
+DEEPEST_RECURSION = 16
 
 
 class Status(IntEnum):

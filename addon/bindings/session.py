@@ -73,8 +73,7 @@ class Statistics:
     kernel: str
     instruction_set: str
     texture_bytes: int
-    wide_vertices: int
-    narrow_vertices: int
+    vertices: int
     split_lights: int
     split_paths: int
 

@@ -6,7 +6,7 @@ lancer.h defines units and frames. Snapshots compare by value; NaN equals NaN.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, make_dataclass
 
 import numpy as np
 
@@ -16,18 +16,16 @@ from .enums import (
     CameraKind,
     Domain,
     Falloff,
-    Features,
     InstanceKind,
-    Integrator,
     LightKind,
     Pass,
-    PixelFilter,
     Ray,
     Shading,
 )
 from .npz import SnapshotError, load_npz, register, save_npz
 from .record import Record, array
 from .shading import Image, Lobe, Material, Node, NodeRef, Principled, World  # noqa: F401 - all records have one address
+from .structs import SETTINGS
 
 _IDENTITY = np.eye(4)[:3]
 
@@ -261,37 +259,24 @@ class Camera(Record):
             self.set("region_height", self.height - self.y)
 
 
+# The members of lancer_settings with their defaults; refines follows from the other settings.
+_CoreSettings = make_dataclass(
+    "_CoreSettings",
+    [(name, type(given), given) for name, (_, given) in SETTINGS.items() if name != "refines"],
+    bases=(Record,),
+    frozen=True,
+    eq=False,
+)
+
+
 @register
 @dataclass(frozen=True, eq=False)
-class Settings(Record):
-    integrator: int = Integrator.PATH
-    samples: int = 16
+class Settings(_CoreSettings):
+    """The settings of lancer.h under the same names, and when a render ends."""
+
+    passes: tuple = (Pass.COMBINED,)  # of enums.Pass
     target_error: float = 0.0  # relative; 0 = off
     time_limit: float = 0.0  # s; 0 = off
-    seed: int = 0
-    max_bounces: int = 10
-    contribution_threshold: float = 0.0
-    clamp_indirect: float = 0.0
-    split_lights: int = 1  # 0 for both: chosen by a pilot render of a few pixels
-    split_paths: int = 1
-    pixel_filter: int = PixelFilter.BOX
-    filter_width: float = 1.0
-    film_transparent: bool = False
-    transparent_glass: bool = False
-    glass_roughness: float = 0.0  # alpha
-    transparent_bounces: int = 8
-    transparent_shadows: int = 8
-    alpha_threshold: float = 0.5
-    environment_reflections: bool = False
-    occlusion_distance: float = 0.0
-    mist_start: float = 5.0
-    mist_depth: float = 25.0
-    mist_falloff: float = 2.0
-    blended_features: bool = False  # denoising passes as in Blender 5.2
-    features: int = Features.SCENE
-    passes: tuple = (Pass.COMBINED,)
-    threads: int = 0
-    tile_size: int = 0
     accelerator: int = Accelerator.BVH
 
     def __post_init__(self):

@@ -237,6 +237,8 @@ class Camera(Structure):
 
 
 class Settings(Structure):
+    """How a scene is rendered."""
+
     _fields_ = [
         ("integrator", c_uint32),
         ("samples", c_uint32),
@@ -300,8 +302,7 @@ class Statistics(Structure):
         ("kernel", c_char * 64),
         ("instruction_set", c_char * 32),
         ("texture_bytes", c_uint64),
-        ("wide_vertices", c_uint64),
-        ("narrow_vertices", c_uint64),
+        ("vertices", c_uint64),
         ("split_lights", c_uint32),
         ("split_paths", c_uint32),
     ]
@@ -460,4 +461,35 @@ PARAMETERS = {
     World: {
         "radiance": ("color", (0.0, 0.0, 0.0)),
     },
+}
+
+# Kind and default of each setting, from lancer.h.
+SETTINGS = {
+    "integrator": ("choice", 0),
+    "samples": ("number", 256),
+    "seed": ("number", 0),
+    "max_bounces": ("number", 10),
+    "contribution_threshold": ("amount", 0.0),
+    "clamp_indirect": ("amount", 0.0),
+    "split_lights": ("number", 1),
+    "split_paths": ("number", 1),
+    "pixel_filter": ("choice", 0),
+    "filter_width": ("width", 1.0),
+    "film_transparent": ("switch", False),
+    "transparent_glass": ("switch", False),
+    "glass_roughness": ("amount", 0.0),
+    "transparent_bounces": ("number", 8),
+    "transparent_shadows": ("number", 8),
+    "alpha_threshold": ("amount", 0.5),
+    "environment_reflections": ("switch", False),
+    "occlusion_distance": ("amount", 0.0),
+    "mist_start": ("amount", 5.0),
+    "mist_depth": ("amount", 25.0),
+    "mist_falloff": ("amount", 2.0),
+    "blended_features": ("switch", False),
+    "features": ("choice", 0),
+    "passes": ("bits", 1),
+    "threads": ("number", 0),
+    "tile_size": ("number", 0),
+    "refines": ("switch", False),
 }

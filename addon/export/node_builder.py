@@ -6,7 +6,7 @@ The base of graph.NodeGraph, which reads Blender's nodes into them.
 import math
 
 from ..bindings import snapshot
-from ..bindings.enums import AlphaMode, MathOperation, MixMode, NodeKind, VectorOperation
+from ..bindings.enums import MOST_NODES, AlphaMode, MathOperation, MixMode, NodeKind, VectorOperation
 from ..bindings.shading import NodeRef
 from ..messages.severity import Severity
 from .arithmetic import is_constant, single, triple
@@ -15,7 +15,6 @@ from .fold import FOLDED, fold, gives_number
 
 UNKNOWN = {"mid-grey": (0.5, 0.5, 0.5), "white": (1.0, 1.0, 1.0)}
 _OF_THREE = {NodeKind.MIX, NodeKind.VECTOR_MATH, NodeKind.INVERT}
-_MOST_NODES = 4096  # the core's limit
 
 
 class _Scope:
@@ -55,8 +54,8 @@ class NodeBuilder:
         numbers = self._scopes[-1].numbers
         key = (kind, option, flags, name, image, image_count, first, node.inputs, node.matrix)
         if key not in numbers:
-            if len(self._nodes) >= _MOST_NODES:
-                text = f"has more than {_MOST_NODES} nodes, {self.unknown} is used for the rest"
+            if len(self._nodes) >= MOST_NODES:
+                text = f"has more than {MOST_NODES} nodes, {self.unknown} is used for the rest"
                 self.messages.add(f"{self.owner}: {text}", "feature:many nodes", severity=Severity.WRONG)
                 return UNKNOWN[self.unknown]
             numbers[key] = len(self._nodes)

@@ -3,12 +3,10 @@
 import bpy
 
 from ..bindings import snapshot
-from ..bindings.enums import Accelerator, Features, Integrator, Pass, PixelFilter
+from ..bindings.enums import DEEPEST_RECURSION, Accelerator, Features, Integrator, Pass, PixelFilter
 
 # Number of threads, from the add-on's preferences, if the scene does not fix one; 0 = all.
 default_threads = 0
-# The core's limit: glass doubles the rays of Classic with every bounce.
-_DEEPEST_RECURSION = 16
 # The exponents of Blender's falloffs.
 _MIST_FALLOFFS = {"QUADRATIC": 2.0, "LINEAR": 1.0, "INVERSE_QUADRATIC": 0.5}
 
@@ -29,9 +27,9 @@ def export_settings(depsgraph, passes, world, messages):
     who = f"scene '{scene.name}'"
     seed = own.seed + (scene.frame_current if own.use_animated_seed else 0)
     bounces = own.max_bounces
-    if own.integrator == "CLASSIC" and bounces > _DEEPEST_RECURSION:
-        messages.add(f"{who}: {bounces} bounces are more than Classic follows, {_DEEPEST_RECURSION} are used")
-        bounces = _DEEPEST_RECURSION
+    if own.integrator == "CLASSIC" and bounces > DEEPEST_RECURSION:
+        messages.add(f"{who}: {bounces} bounces are more than Classic follows, {DEEPEST_RECURSION} are used")
+        bounces = DEEPEST_RECURSION
     samples = depsgraph.view_layer_eval.samples or own.samples
     return snapshot.Settings(
         integrator=Integrator[own.integrator],

@@ -6,6 +6,10 @@ Files store the numbers of enum items: never renumber or reuse them.
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
+from ..bindings.structs import SETTINGS
+
+_GIVEN = {name: given for name, (_, given) in SETTINGS.items()}
+
 # Target error and the limit of samples of each preset.
 QUALITIES = {"DRAFT": (0.1, 1024), "GOOD": (0.03, 8192), "FINAL": (0.01, 65536)}
 _presets = []  # presets that are being applied
@@ -78,7 +82,7 @@ class LancerSceneSettings(bpy.types.PropertyGroup):
         min=0,
         soft_max=64,
         max=1024,
-        default=10,
+        default=_GIVEN["max_bounces"],
     )
     contribution_threshold: FloatProperty(
         name="Contribution Threshold",
@@ -86,7 +90,7 @@ class LancerSceneSettings(bpy.types.PropertyGroup):
         min=0.0,
         soft_max=0.1,
         precision=4,
-        default=0.0,
+        default=_GIVEN["contribution_threshold"],
     )
     transparent_bounces: IntProperty(
         name="Transparent Bounces",
@@ -94,7 +98,7 @@ class LancerSceneSettings(bpy.types.PropertyGroup):
         min=0,
         soft_max=64,
         max=1023,
-        default=8,
+        default=_GIVEN["transparent_bounces"],
     )
     environment_reflections: BoolProperty(
         name="Environment Reflections",
@@ -106,7 +110,7 @@ class LancerSceneSettings(bpy.types.PropertyGroup):
         description="Limit of a sample's indirect light, to avoid fireflies. Makes the picture too dark; 0 = off",
         min=0.0,
         soft_max=100.0,
-        default=0.0,
+        default=_GIVEN["clamp_indirect"],
     )
     pixel_filter: EnumProperty(
         name="Pixel Filter",
@@ -235,7 +239,7 @@ def add_watched(scene):
         min=1,
         soft_max=4096,
         max=1 << 24,
-        default=256,
+        default=_GIVEN["samples"],
         update=_numbers_changed,
     )
 

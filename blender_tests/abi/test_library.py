@@ -12,6 +12,7 @@ from conftest import ROOT
 from addon.bindings import abi
 
 HEADER = os.path.join(ROOT, "core", "include", "lancer.h")
+PROBES = os.path.join(ROOT, "core", "include", "lancer_probes.h")
 
 
 def refusal(path):
@@ -94,7 +95,7 @@ def test_versions_and_sizes(library):
 def test_header_is_c99(tmp_path):
     """The header compiles alone as strict C99 and as C++ without warnings."""
     (tmp_path / "use.c").write_text(
-        '#include "lancer.h"\nint main(void) { return lancer_abi_version() == LANCER_ABI_VERSION; }\n'
+        '#include "lancer_probes.h"\nint main(void) { return lancer_abi_version() == LANCER_ABI_VERSION; }\n'
     )
     include = os.path.dirname(HEADER)
     for language in (["-std=c99", "-x", "c"], ["-std=c++20", "-x", "c++"]):
@@ -116,21 +117,22 @@ def test_header_is_c99(tmp_path):
 
 def test_bindings_are_those_that_the_header_gives_now(tmp_path):
     """After a change of the header, `make bindings` must be run for the Python bindings and the core's table."""
-    subprocess.run([sys.executable, os.path.join(ROOT, ".ci", "bindings.py"), HEADER, tmp_path], check=True)
-    for made in ("addon/bindings/enums.py", "addon/bindings/structs.py", "core/src/scene/principled_table.h"):
+    subprocess.run([sys.executable, os.path.join(ROOT, ".ci", "bindings.py"), tmp_path], check=True)
+    tables = "core/src/scene/principled_table.h", "core/src/integrator/settings_table.h"
+    for made in ("addon/bindings/enums.py", "addon/bindings/structs.py", *tables):
         with open(os.path.join(ROOT, made), encoding="utf-8") as file:
             assert file.read() == (tmp_path / os.path.basename(made)).read_text(encoding="utf-8"), made
 
 
 def test_bindings_name_every_function_of_the_header():
-    text = open(HEADER, encoding="utf-8").read()
+    text = "".join(open(header, encoding="utf-8").read() for header in (HEADER, PROBES))
     functions = set(re.findall(r"^LANCER_API [^;]*?\b(lancer_\w+)\(", text, re.M))
     assert functions == set(abi._CALLS) | set(abi._QUERIES)
 
 
 def assert_that_c_holds(tmp_path, facts):
     checks = "".join(f'_Static_assert({fact}, "{fact}");\n' for fact in facts)
-    (tmp_path / "facts.c").write_text('#include "lancer.h"\n' + checks)
+    (tmp_path / "facts.c").write_text('#include "lancer_probes.h"\n' + checks)
     command = ["gcc", "-std=c11", "-I", os.path.dirname(HEADER), "-fsyntax-only", tmp_path / "facts.c"]
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr

@@ -57,20 +57,19 @@ def test_tile_sizes(reference, tile_size):
 
 @pytest.mark.parametrize("integrator", INTEGRATORS, ids=lambda i: i.name)
 def test_vertices_are_counted_the_same(integrator):
-    """Statistics count the same vertices, all in lanes, however the work is divided and whatever the passes."""
+    """Statistics count the same vertices, however the work is divided and whatever the passes."""
 
     def counted(**settings):
         with Session.upload(picture(integrator=integrator, **settings)) as session:
             session.render_all()
-            statistics = session.statistics()
-            return statistics.wide_vertices, statistics.narrow_vertices
+            return session.statistics().vertices
 
     alone = {"passes": (Pass.COMBINED,)}
-    wide, narrow = counted(threads=1, **alone)
-    assert wide > 0 and narrow == 0
+    expected = counted(threads=1, **alone)
+    assert expected > 0
     for settings in ({"threads": 7}, {"threads": 2, "tile_size": 5}, {"threads": 2, "tile_size": 1000}):
-        assert counted(**settings, **alone) == (wide, narrow)
-    assert counted(threads=2) == (wide, narrow)
+        assert counted(**settings, **alone) == expected
+    assert counted(threads=2) == expected
 
 
 @pytest.mark.parametrize("accelerator", Accelerator)

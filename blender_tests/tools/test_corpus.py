@@ -41,7 +41,7 @@ class Engine:
         answer = {"wall": 0.5, "seconds": self.seconds * samples, "peak_bytes": 1e6, "size": [SIZE[1], SIZE[0]]}
         if self.engine == "LANCER":
             answer |= {"messages": [f"no {key}" for key in self.missing], "missing": self.missing, "build_seconds": 0.1}
-            answer |= {"export_seconds": 0.2, "wide_vertices": 3, "narrow_vertices": 1}
+            answer |= {"export_seconds": 0.2}
         return answer
 
 

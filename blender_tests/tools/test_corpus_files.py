@@ -56,7 +56,7 @@ def test_a_row_has_its_figures(measured):
     ours, theirs = (row["engines"][engine] for engine in ("LANCER", "CYCLES"))
     for record in (ours, theirs):
         assert record["samples_per_second"] > 0 and record["setup_seconds"] > 0 and record["peak_bytes"] > 0
-    assert ours["export_seconds"] > 0 and ours["build_seconds"] > 0 and ours["wide_vertices"] > 0
+    assert ours["export_seconds"] > 0 and ours["build_seconds"] > 0
     assert row["efficiency"] == pytest.approx(row["speed"] / row["variance"]["ratio"])
 
 

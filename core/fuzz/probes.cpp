@@ -1,4 +1,5 @@
 #include "probes.h"
+#include "lancer_probes.h"
 
 #include "checked.h"
 

@@ -32,7 +32,11 @@ extern "C" {
 #endif
 
 /* Incremented with each change of a struct or a call of this header. */
-#define LANCER_ABI_VERSION 7u
+#define LANCER_ABI_VERSION 8u
+
+/* Limits: nodes of a material or world; recursion of CLASSIC, in which glass doubles the rays with every depth. */
+#define LANCER_MOST_NODES 4096u
+#define LANCER_DEEPEST_RECURSION 16u
 
 typedef uint64_t lancer_scene;
 typedef uint64_t lancer_session;
@@ -489,6 +493,10 @@ typedef struct lancer_node {
   float matrix[12]; /* 3 x 4 row-major */
 } lancer_node;
 
+/* Evaluates a node whose inputs are constants and that does not depend on the hit, as programs compute it: value (float[4]).
+ * Any other node is a LANCER_ERROR_ARGUMENT. */
+LANCER_API lancer_status lancer_evaluate_node(const lancer_node *node, float *value);
+
 /* ---- materials -------------------------------------------------------------------------------------------------- */
 
 /* clang-format off */
@@ -610,7 +618,7 @@ typedef struct lancer_material {
   const lancer_lobe *lobes;
   const lancer_node *nodes;
   uint32_t lobe_count;            /* at most 64; 0 is a black surface */
-  uint32_t node_count;            /* at most 4096 */
+  uint32_t node_count;            /* at most LANCER_MOST_NODES */
   uint32_t material_index;        /* value of the material index pass */
   uint32_t flags;                 /* LANCER_MATERIAL_* bits */
   lancer_parameter emission;      /* [color 0] radiance, both sides; may be negative */
@@ -795,37 +803,45 @@ enum lancer_pass {
   LANCER_PASS_COUNT = 24
 };
 
+/* How a scene is rendered. Each comment begins with kind, default and, where there is one, the largest value: a choice of an
+ * enum; a number; an amount, finite and not negative; a width, finite and positive; a switch, 0 or 1; bits. */
 typedef struct lancer_settings {
-  uint32_t integrator; /* LANCER_PATH ... */
-  uint32_t samples;    /* planned per pixel; CLASSIC with 1 uses the centre of pixel, lens and light */
-  uint32_t seed;
-  uint32_t max_bounces;               /* PATH: scattering events after the first; CLASSIC: recursion depth */
-  float contribution_threshold;       /* CLASSIC: a ray is traced only if its throughput exceeds this in some channel */
-  float clamp_indirect;               /* PATH: largest channel of a sample's indirect light; 0 = off */
-  uint32_t split_lights, split_paths; /* PATH: number of lights sampled and of branches continued per sample at its first
-                                         surface with a lobe that is not a single direction; at most 16. Both 0: chosen by
-                                         rendering a few pixels before the first sample, if at least 16 samples are planned */
-  uint32_t pixel_filter;              /* LANCER_FILTER_* */
-  float filter_width;                 /* full width in pixels */
-  uint32_t film_transparent;          /* 1: the environment has alpha 0 */
-  uint32_t transparent_glass;         /* 1: the environment has alpha 0 also through glass of at most glass_roughness */
-  float glass_roughness;              /* alpha */
-  uint32_t transparent_bounces;       /* surfaces that a ray may pass straight through; the next one contributes only its
-                                         emission */
-  uint32_t transparent_shadows;       /* surfaces that a shadow ray may pass, including those that its path has passed before */
-  float alpha_threshold; /* NORMAL, UV, DEPTH, POSITION and the indices are of the first surface with at least this opacity */
-  uint32_t environment_reflections; /* CLASSIC: 1 = a reflected or refracted ray returns the environment's colour without
+  uint32_t integrator;          /* [choice 0 2] LANCER_PATH ... */
+  uint32_t samples;             /* [number 256] planned per pixel; CLASSIC with 1 uses the centre of pixel, lens and light */
+  uint32_t seed;                /* [number 0] */
+  uint32_t max_bounces;         /* [number 10 1024] PATH: scattering events after the first; CLASSIC: recursion depth, at most
+                                   LANCER_DEEPEST_RECURSION */
+  float contribution_threshold; /* [amount 0] CLASSIC: a ray is traced only if its throughput exceeds this in some channel */
+  float clamp_indirect;         /* [amount 0] PATH: largest channel of a sample's indirect light; 0 = off */
+  uint32_t split_lights;        /* [number 1 16] PATH: number of lights sampled per sample at its first surface with a lobe
+                                   that is not a single direction. 0, as split_paths: chosen by rendering a few pixels before
+                                   the first sample, if at least 16 samples are planned */
+  uint32_t split_paths;         /* [number 1 16] PATH: number of branches that continue from that surface */
+  uint32_t pixel_filter;        /* [choice 0 1] LANCER_FILTER_* */
+  float filter_width;           /* [width 1] full width in pixels */
+  uint32_t film_transparent;    /* [switch 0] the environment has alpha 0 */
+  uint32_t transparent_glass;   /* [switch 0] the environment has alpha 0 also through glass of at most glass_roughness */
+  float glass_roughness;        /* [amount 0] alpha */
+  uint32_t transparent_bounces; /* [number 8 1024] surfaces that a ray may pass straight through; the next one contributes only
+                                   its emission */
+  uint32_t transparent_shadows; /* [number 8 1024] surfaces that a shadow ray may pass, including those that its path has
+                                   passed before */
+  float alpha_threshold;        /* [amount 0.5] NORMAL, UV, DEPTH, POSITION and the indices are of the first surface with at
+                                   least this opacity */
+  uint32_t environment_reflections; /* [switch 0] CLASSIC: a reflected or refracted ray returns the environment's colour without
                                        being traced */
-  float occlusion_distance;         /* AMBIENT_OCCLUSION: largest distance of an occluder; 0 = unlimited */
-  float mist_start, mist_depth, mist_falloff; /* MIST: distances from the camera; the exponent */
-  uint32_t blended_features; /* ALBEDO, DENOISING_*: 0 = from one surface, as in Blender up to 5.1; 1 = blended over surfaces
-                                by their share of matt lobes, as in 5.2 */
-  uint32_t features;         /* LANCER_FEATURES_SCENE: the kernel specialised for the scene; ALL: the general kernel. Same
-                                pixels */
-  uint32_t passes;           /* bits 1u << LANCER_PASS_*; COMBINED is always kept */
-  uint32_t threads;          /* 0 = one per processor */
-  uint32_t tile_size;        /* pixels; 0 = automatic. Changes no pixel */
-  uint32_t refines;          /* 1: lancer_session_refine will be called */
+  float occlusion_distance;         /* [amount 0] AMBIENT_OCCLUSION: largest distance of an occluder; 0 = unlimited */
+  float mist_start;                 /* [amount 5] MIST: distance from the camera */
+  float mist_depth;                 /* [amount 25] MIST: distance from mist_start */
+  float mist_falloff;               /* [amount 2] MIST: the exponent */
+  uint32_t blended_features; /* [switch 0] ALBEDO, DENOISING_*: 0 = from one surface, as in Blender up to 5.1; 1 = blended
+                                over surfaces by their share of matt lobes, as in 5.2 */
+  uint32_t features;         /* [choice 0 1] LANCER_FEATURES_SCENE: the kernel specialised for the scene; ALL: the general
+                                kernel. Same pixels */
+  uint32_t passes;           /* [bits 1 16777215] 1u << LANCER_PASS_*; COMBINED is always kept */
+  uint32_t threads;          /* [number 0 1024] 0 = one per processor */
+  uint32_t tile_size;        /* [number 0] pixels; 0 = automatic. Changes no pixel */
+  uint32_t refines;          /* [switch 0] lancer_session_refine will be called */
 } lancer_settings;
 
 typedef struct lancer_progress {
@@ -844,13 +860,11 @@ typedef struct lancer_statistics {
   uint32_t threads;
   uint64_t triangles, instances, lights;
   uint64_t geometry_bytes, accelerator_bytes, film_bytes;
-  char features[512];       /* features of the scene, separated by blanks */
-  char kernel[64];          /* the specialisation of the integrator that ran */
-  char instruction_set[32]; /* e.g. "AVX2" */
-  uint64_t texture_bytes;   /* images; geometry_bytes covers meshes, instances and lights */
-  /* Vertices of rays on surfaces: shaded by kernels of many lanes, and one by one by the general code. Layers that a cut-out
-   * removes are not counted. */
-  uint64_t wide_vertices, narrow_vertices;
+  char features[512];                 /* features of the scene, separated by blanks */
+  char kernel[64];                    /* the specialisation of the integrator that ran */
+  char instruction_set[32];           /* e.g. "AVX2" */
+  uint64_t texture_bytes;             /* images; geometry_bytes covers meshes, instances and lights */
+  uint64_t vertices;                  /* of rays on surfaces, without layers that a cut-out removes */
   uint32_t split_lights, split_paths; /* the numbers in use; 0 before the first sample */
 } lancer_statistics;
 
@@ -911,112 +925,6 @@ typedef struct lancer_vertex {
  * the first capacity vertices in order of visit (may be NULL with 0); *count receives their total number. */
 LANCER_API lancer_status lancer_debug_sample(lancer_session session, uint32_t x, uint32_t y, uint32_t s, float *rgba,
                                              lancer_vertex *vertices, uint32_t capacity, uint32_t *count);
-
-/* ---- probes: single stages, vectorised, for tests ---------------------------------------------------------------- */
-
-typedef struct lancer_hit {
-  double t;           /* in units of the direction's length; infinity on a miss */
-  double u, v;        /* barycentric weights of vertices 1 and 2; exact surfaces: their parametrisation */
-  double position[3]; /* world */
-  float normal[3];    /* shading normal, world, unit, on the side of the outward geometric normal */
-  float geometric_normal[3];
-  float uv[2];
-  float color[3];     /* vertex colour; 1 if there is none */
-  uint32_t instance;  /* in order of adding; UINT32_MAX on a miss */
-  uint32_t primitive; /* triangle as given to add_mesh; 0 for exact surfaces */
-  uint32_t material;  /* UINT32_MAX if the instance has no slot */
-} lancer_hit;
-
-/* Finds closest hits with tmin < t < tmax. origins, directions [count][3]; tmin, tmax [count]. */
-LANCER_API lancer_status lancer_probe_intersect(lancer_scene scene, uint32_t count, const double *origins,
-                                                const double *directions, const double *tmin, const double *tmax,
-                                                lancer_hit *hits);
-/* Sets occluded[i] = 1 if the ray hits anything with tmin < t < tmax. */
-LANCER_API lancer_status lancer_probe_occluded(lancer_scene scene, uint32_t count, const double *origins,
-                                               const double *directions, const double *tmin, const double *tmax,
-                                               uint8_t *occluded);
-
-/* Counts the work of the wide BVH in lancer_probe_occluded (any = 1) or lancer_probe_intersect (any = 0) over all these
- * rays; zeros with another accelerator. counts[4]: nodes of eight boxes (256 bytes each); blocks of four triangles (160);
- * blocks of four exact spheres (416); trees of meshes entered plus single exact surfaces. */
-LANCER_API lancer_status lancer_probe_traversal(lancer_scene scene, uint32_t count, const double *origins,
-                                                const double *directions, const double *tmin, const double *tmax, uint32_t any,
-                                                uint64_t *counts);
-
-/* Evaluates f[count][3] and pdf[count] of a material for local directions wo, wi [count][3] (n = +z, tangent +x; nodes are
- * evaluated at the middle of a unit square); f without cosine, pdf per solid angle; lobes of a single direction give 0 here. */
-LANCER_API lancer_status lancer_probe_bsdf(lancer_scene scene, uint32_t material, uint32_t count, const float *wo,
-                                           const float *wi, float *f, float *pdf);
-
-typedef struct lancer_bsdf_sample {
-  float wi[3];
-  float weight[3]; /* f |cos| / pdf; for a single direction its weight / probability; 0 = no sample */
-  float pdf;       /* per solid angle; for a single direction its probability */
-  uint32_t delta;  /* 1 for a single direction */
-} lancer_bsdf_sample;
-/* Samples a material: wo [count][3], u [count][3] in [0, 1). */
-LANCER_API lancer_status lancer_probe_bsdf_sample(lancer_scene scene, uint32_t material, uint32_t count, const float *wo,
-                                                  const float *u, lancer_bsdf_sample *samples);
-
-/* A lobe for one wo, after nodes and layers. */
-typedef struct lancer_lobe_info {
-  uint32_t kind;      /* LANCER_LAMBERT ...; never PRINCIPLED */
-  uint32_t component; /* 0 diffuse, 1 glossy, 2 transmission */
-  float weight[3];    /* factor of the lobe's value */
-  float albedo[3];    /* scattered share of light from wo, weight included */
-  float roughness[2]; /* alpha along tangent and bitangent */
-  float ior;
-  float probability; /* of being sampled */
-} lancer_lobe_info;
-/* Lists the lobes of a material for the local direction wo (float[3]). lobes receives the first capacity of them, *count
- * their total number. emission and transmittance (float[3] each) may be NULL. */
-LANCER_API lancer_status lancer_probe_lobes(lancer_scene scene, uint32_t material, const float *wo, lancer_lobe_info *lobes,
-                                            uint32_t capacity, uint32_t *count, float *emission, float *transmittance);
-/* Evaluates a node of a material at UV coordinates [count][2] of a unit square in the plane z = 0 of its object, seen along
- * its normal: values [count][4]. */
-LANCER_API lancer_status lancer_probe_node(lancer_scene scene, uint32_t material, uint32_t node, uint32_t count,
-                                           const float *uv, float *values);
-/* Evaluates a node whose inputs are constants and that does not depend on the hit, as programs compute it: value (float[4]).
- * Any other node is a LANCER_ERROR_ARGUMENT. */
-LANCER_API lancer_status lancer_evaluate_node(const lancer_node *node, float *value);
-/* Evaluates the world's radiance [count][3] in unit directions [count][3], and the density per solid angle with which each
- * direction is sampled. */
-LANCER_API lancer_status lancer_probe_world(lancer_scene scene, uint32_t count, const double *directions, float *radiance,
-                                            float *pdf);
-
-/* Evaluates the terms of BECKMANN for cosines against n and h: D(n.h), F(l.h), G1 of a direction with cosine n.v and v.h >
- * 0. Arrays [count]. */
-LANCER_API lancer_status lancer_probe_microfacet(uint32_t count, const float *cos_nh, const float *cos_lh, const float *cos_nv,
-                                                 const float *alpha, const float *ior, float *d, float *f, float *g1);
-
-typedef struct lancer_light_sample {
-  double wi[3];      /* unit, towards the light */
-  double distance;   /* infinite for sun and environment */
-  float radiance[3]; /* for a point-like light: intensity / distance^2 (irradiance at normal incidence) */
-  float pdf;         /* per solid angle; 1 for a point-like light; 0 = no sample */
-  uint32_t delta;
-  uint32_t reserved;
-} lancer_light_sample;
-/* Samples one light from points [count][3] with u [count][2]. Lights are numbered in order of adding, then one per emitting
- * instance, then the environment if its radiance varies (a constant one is better found by BSDF samples). */
-LANCER_API lancer_status lancer_probe_light(lancer_scene scene, uint32_t light, uint32_t count, const double *points,
-                                            const float *u, lancer_light_sample *samples);
-/* Returns the density per solid angle with which that light would sample wi (unit, [count][3]) from points; 0 if the
- * direction misses the light. */
-LANCER_API lancer_status lancer_probe_light_pdf(lancer_scene scene, uint32_t light, uint32_t count, const double *points,
-                                                const double *wi, float *pdf);
-
-/* Generates rays for raster positions [count][2] (pixels of the full image, 0, 0 lower left corner) and lens [count][2] in
- * [0, 1). Directions have z component 1 along the camera's axis (PERSPECTIVE) or unit length; 0, 0, 0 outside a panorama's
- * field of view. */
-LANCER_API lancer_status lancer_probe_camera(lancer_session session, uint32_t count, const double *raster, const double *lens,
-                                             double *origins, double *directions);
-
-/* Returns the sampler's numbers for dimensions 0 ... dimensions - 1 of one address: out[dimensions] in [0, 1). */
-LANCER_API lancer_status lancer_probe_sampler(uint32_t seed, uint32_t x, uint32_t y, uint32_t sample, uint32_t dimensions,
-                                              float *out);
-/* Returns the offsets from the pixel's centre, in pixels, that a filter of that kind and full width samples for u [count]. */
-LANCER_API lancer_status lancer_probe_filter(uint32_t filter, float width, uint32_t count, const float *u, float *offset);
 
 #ifdef __cplusplus
 }

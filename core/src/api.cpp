@@ -1,4 +1,5 @@
 // The C interface: checks handles and pointers, turns exceptions into statuses, and calls the rooms.
+#include "lancer_probes.h"
 #include "objects.h"
 #include "render/session.h"
 #include "scene/fill.h"
@@ -320,8 +321,7 @@ lancer_status lancer_session_statistics(lancer_session session, lancer_statistic
     statistics->texture_bytes = scene.texture_bytes();
     statistics->split_lights = from.splits.lights;
     statistics->split_paths = from.splits.paths;
-    statistics->wide_vertices = from.vertices.wide;
-    statistics->narrow_vertices = from.vertices.narrow;
+    statistics->vertices = from.vertices;
     return LANCER_OK;
   });
 }

@@ -71,7 +71,7 @@ public:
 };
 
 struct SessionObject {
-  SessionObject(std::shared_ptr<const Scene> scene, const Camera &camera, const SessionSettings &settings)
+  SessionObject(std::shared_ptr<const Scene> scene, const Camera &camera, const IntegratorSettings &settings)
       : session(std::move(scene), camera, settings) {}
   std::mutex mutex;
   Session session;

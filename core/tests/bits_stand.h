@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bits_hash.h"
+#include "lancer_probes.h"
 #include "tiny_scene.h"
 
 #include <gtest/gtest.h>
@@ -94,7 +95,7 @@ public:
   lancer_camera camera = make_camera(16, 12);
   lancer_settings settings = make_settings();
   BitsHash hash;
-  uint64_t wide_vertices = 0;
+  uint64_t vertices = 0;
 
   Stand() { lancer_scene_create(&scene_); }
   ~Stand() {
@@ -173,7 +174,7 @@ public:
     EXPECT_EQ(std::memcmp(with.data(), read(LANCER_PASS_COMBINED).data(), with.size() * sizeof(float)), 0);
     lancer_statistics statistics;
     ASSERT_EQ(lancer_session_statistics(session_, &statistics), LANCER_OK) << lancer_last_error();
-    wide_vertices += statistics.wide_vertices;
+    vertices += statistics.vertices;
   }
 
   // Hashes a node's values over the unit square.

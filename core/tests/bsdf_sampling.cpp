@@ -147,7 +147,7 @@ TEST(BsdfSampling, VisibleNormalsIntegrateToOne) {
         double jacobian;
         const glm::dvec3 h = testing::half_vector_at(place, alpha, jacobian);
         const double tan2 = (h.x * h.x + h.y * h.y) / (h.z * h.z);
-        return jacobian * g1 * std::max(0.0, glm::dot(glm::dvec3(wo), h)) / wo.z * beckmann_d(static_cast<float>(tan2), alpha);
+        return jacobian * g1 * std::max(0.0, glm::dot(glm::dvec3(wo), h)) / wo.z * coating_d(static_cast<float>(tan2), alpha);
       };
       // Small initial cells: at the edge of visibility a corner can fall between the nodes.
       const double sum = testing::integrate_square(visible, 64, 1e-9);

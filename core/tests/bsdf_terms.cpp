@@ -189,7 +189,7 @@ TEST(Beckmann, DensityMatchesMpmath) {
   };
   // The exponent tan^2 / alpha^2 <= 6.25 has two roundings, the prefactor six.
   for (const auto &v : values)
-    EXPECT_NEAR(beckmann_d(v.tan2, v.alpha) / v.expected, 1.0, (2.0 * 6.25 + 6.0) * kUlp) << v.tan2 << " " << v.alpha;
+    EXPECT_NEAR(coating_d(v.tan2, v.alpha) / v.expected, 1.0, (2.0 * 6.25 + 6.0) * kUlp) << v.tan2 << " " << v.alpha;
 }
 
 TEST(Beckmann, MaskingMatchesMpmath) {

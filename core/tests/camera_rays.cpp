@@ -44,8 +44,8 @@ void expect_general(Camera camera, IntegratorSettings settings) {
   for (SampleResult &result : results)
     result.radiance = glm::vec3(7.0f);
   const std::vector<Started> started = start(camera, settings, addresses, results);
-  const PixelFilter filter(settings.filter, settings.filter_width);
-  const bool middle = settings.kind != IntegratorKind::Path && settings.samples == 1;
+  const PixelFilter filter(settings.filter(), settings.filter_width);
+  const bool middle = settings.kind() != IntegratorKind::Path && settings.samples == 1;
   size_t next = 0;
   for (uint32_t slot = 0; slot < addresses.size(); ++slot) {
     EXPECT_EQ(results[slot].radiance, glm::vec3(0.0f));
@@ -77,7 +77,8 @@ void expect_general(Camera camera, IntegratorSettings settings) {
 
 TEST(CameraRays, PinholesOfBothFilters) {
   for (const FilterKind filter : {FilterKind::Box, FilterKind::BlackmanHarris})
-    expect_general(lancer_test::camera(CameraKind::Perspective, {}), {.seed = 5, .filter = filter, .filter_width = 1.7f});
+    expect_general(lancer_test::camera(CameraKind::Perspective, {}),
+                   {.seed = 5, .pixel_filter = static_cast<uint32_t>(filter), .filter_width = 1.7f});
 }
 
 TEST(CameraRays, ParallelOnes) { expect_general(lancer_test::camera(CameraKind::Orthographic, {}), {.seed = 9}); }
@@ -98,15 +99,16 @@ TEST(CameraRays, PanoramasWithPlacesThatShowNothing) {
 }
 
 TEST(CameraRays, MiddlesOfPixels) {
-  expect_general(lancer_test::camera(CameraKind::Perspective, {}), {.kind = IntegratorKind::Classic, .samples = 1});
+  expect_general(lancer_test::camera(CameraKind::Perspective, {}),
+                 {.integrator = static_cast<uint32_t>(IntegratorKind::Classic), .samples = 1});
 }
 
 // The last entry of the filter's table is used like the others.
 TEST(CameraRays, WholeFilterInLanes) {
   // The first 2^14 samples of a pixel use every 2^-14 of the filter in both directions, including its ends.
   Camera camera = lancer_test::camera(CameraKind::Perspective, {});
-  const IntegratorSettings settings{.filter_width = 4.0f};
-  const PixelFilter filter(settings.filter, settings.filter_width);
+  const IntegratorSettings settings{.pixel_filter = static_cast<uint32_t>(FilterKind::BlackmanHarris), .filter_width = 4.0f};
+  const PixelFilter filter(settings.filter(), settings.filter_width);
   std::vector<SampleAddress> addresses;
   for (uint32_t sample = 0; sample < 1u << 14; ++sample)
     addresses.push_back({3, 4, sample});

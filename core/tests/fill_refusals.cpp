@@ -4,6 +4,7 @@
 #include "bsdf/lobe.h"
 #include "compile/features.h"
 #include "compile/steps.h"
+#include "lancer_probes.h"
 #include "tiny_scene.h"
 
 #include <cmath>

@@ -47,7 +47,7 @@ TEST(SamePictures, LampsOfAllKinds) {
   stand.add(light);
   stand.commit();
   stand.render();
-  EXPECT_GT(stand.wide_vertices, 0u);
+  EXPECT_GT(stand.vertices, 0u);
   EXPECT_EQ(stand.hash.value(), 0xd10887dec5123297u);
 }
 
@@ -87,7 +87,7 @@ TEST(SamePictures, LensesAndPanoramas) {
     std::copy(panoramas[kind - 2], panoramas[kind - 2] + 8, stand.camera.panorama);
     stand.render();
   }
-  EXPECT_GT(stand.wide_vertices, 0u);
+  EXPECT_GT(stand.vertices, 0u);
   EXPECT_EQ(stand.hash.value(), 0x665d8a08b11b25cau);
 }
 
@@ -118,7 +118,7 @@ uint64_t crowd(uint32_t kind) {
   stand.settings.samples = 4;
   stand.commit(kind);
   stand.render(3);
-  EXPECT_GT(stand.wide_vertices, 0u);
+  EXPECT_GT(stand.vertices, 0u);
   return stand.hash.value();
 }
 
@@ -158,7 +158,7 @@ TEST(SamePictures, Classic) {
   stand.settings.samples = 1;
   stand.settings.integrator = LANCER_NORMALS;
   stand.render();
-  EXPECT_GT(stand.wide_vertices, 0u);
+  EXPECT_GT(stand.vertices, 0u);
   EXPECT_EQ(stand.hash.value(), 0xc1d253a2b2289ed3u);
 }
 

@@ -1,4 +1,4 @@
-// Numbers of vertices shaded by kernels of many lanes and by the general code.
+// The number of vertices that a render counts.
 #include "picture_lab.h"
 
 #include <gtest/gtest.h>
@@ -24,29 +24,26 @@ lancer_statistics seen(const lancer_lobe &lobe, uint32_t passes, uint32_t thread
 
 constexpr uint32_t kPicture = 1u << LANCER_PASS_COMBINED, kMore = kPicture | 1u << LANCER_PASS_DEPTH;
 
-TEST(VertexCounts, LanesShadeTheUsualSurfaceOfAPictureAlone) {
+TEST(VertexCounts, CountTheSurfacesOfAPictureAlone) {
   for (const uint32_t threads : {1u, 2u, 5u}) {
     const lancer_statistics alone = seen(newest(LANCER_DIFFUSE, 0.5f, 0.0f), kPicture, threads);
     EXPECT_EQ(alone.camera_rays, kRays);
-    EXPECT_EQ(alone.wide_vertices, kRays);
-    EXPECT_EQ(alone.narrow_vertices, 0u);
+    EXPECT_EQ(alone.vertices, kRays);
   }
 }
 
-TEST(VertexCounts, LanesShadeWhateverElseIsAsked) {
+TEST(VertexCounts, CountThemWithOtherPassesAndLobes) {
   // Another pass beside the picture; a rare lobe.
   for (const lancer_statistics &statistics :
        {seen(newest(LANCER_DIFFUSE, 0.5f, 0.0f), kMore, 2), seen(newest(LANCER_SHEEN, 0.5f), kPicture, 2)}) {
-    EXPECT_EQ(statistics.wide_vertices, kRays);
-    EXPECT_EQ(statistics.narrow_vertices, 0u);
+    EXPECT_EQ(statistics.vertices, kRays);
   }
 }
 
-TEST(VertexCounts, LanesShadeWhateverIntegratorAsks) {
+TEST(VertexCounts, CountThemInEveryIntegrator) {
   for (const uint32_t integrator : {LANCER_NORMALS, LANCER_CLASSIC}) {
     const lancer_statistics statistics = seen(lobe(LANCER_LAMBERT, 0.5f), kPicture, 2, integrator);
-    EXPECT_EQ(statistics.wide_vertices, kRays);
-    EXPECT_EQ(statistics.narrow_vertices, 0u);
+    EXPECT_EQ(statistics.vertices, kRays);
   }
 }
 
@@ -54,7 +51,7 @@ TEST(VertexCounts, EmptySpaceHasNone) {
   Studio studio;
   studio.sky(1, 1, 1);
   studio.render();
-  EXPECT_EQ(studio.statistics().wide_vertices + studio.statistics().narrow_vertices, 0u);
+  EXPECT_EQ(studio.statistics().vertices, 0u);
 }
 
 } // namespace

@@ -20,7 +20,7 @@ td img { width: 220px; display: block; background: #000 }
 .equal { color: #07702c } .noise { color: #3d7a4e } .black, .missing { color: #777 }
 """
 _HEAD = ("file", "verdict", "Lancer", "Cycles", "difference x 8", "mean", "99th", "noise", "speed", "variance", "efficiency")
-_HEAD += ("wide", "Lancer set-up, s", "export", "build", "Cycles set-up", "Lancer MB", "Cycles MB", "missing", "remarks")
+_HEAD += ("Lancer set-up, s", "export", "build", "Cycles set-up", "Lancer MB", "Cycles MB", "missing", "remarks")
 
 
 def write(figures, folder):
@@ -32,7 +32,7 @@ def write(figures, folder):
     parts = [
         describe(figures),
         lines((element("button", text, data_verdict=verdict) for verdict, text in buttons.items()), ""),
-        page.table(*_means(found["means"], wide=True)),
+        page.table(*_means(found["means"])),
         page.table(
             ["missing feature", "files made right, given all before", "total", "files that use it", "uses"],
             [[row[name] for name in ("key", "completes", "total", "files", "uses")] for row in found["missing"]],
@@ -53,19 +53,18 @@ def describe(figures):
     return text + (
         f"{plan['pixels']} pixels on the longer side, {plan['rounds']} seeds of each engine by turns. Speed, variance at equal "
         "samples and efficiency, 1 / (variance x seconds), are Lancer's over Cycles'; the variance leaves out the hundredth of "
-        "the pixels where either engine's is largest. Wide: share of the vertices that kernels of many lanes shaded."
+        "the pixels where either engine's is largest."
     )
 
 
-def _means(means, wide=False):
-    """Return (head, rows); wide: add the share of the vertices that kernels of many lanes shaded."""
+def _means(means):
+    """Return (head, rows)."""
     rows = []
     for title, key in _GROUPS:
         found = means[key]
         cells = [times(found[name]) for name in ("speed", "variance", "efficiency", "least_efficiency")]
-        rows.append([title, found["files"], *cells, *([percent(found["wide_share"], 2)] if wide else [])])
-    head = ["Lancer over Cycles, geometric means", "files", "samples/s", "variance", "efficiency", "least efficiency"]
-    return [*head, *(["wide"] if wide else [])], rows
+        rows.append([title, found["files"], *cells])
+    return ["Lancer over Cycles, geometric means", "files", "samples/s", "variance", "efficiency", "least efficiency"], rows
 
 
 def _row(row):
@@ -86,7 +85,6 @@ def _row(row):
         _number(row.get("speed"), times),
         _number(row.get("variance", {}).get("ratio"), times),
         _number(row.get("efficiency"), times),
-        _number(verdicts.wide_share(row), lambda value: percent(value, 2)),
         *(_number(ours.get(name), _seconds) for name in ("setup_seconds", "export_seconds", "build_seconds")),
         _number(theirs.get("setup_seconds"), _seconds),
         *(_number(engine.get("peak_bytes"), _megabytes) for engine in (ours, theirs)),

@@ -49,16 +49,7 @@ def _means(rows):
     usable = {name: [x for x in found if 0.0 < x < math.inf] for name, found in values.items()}
     result = {name: estimates.geometric_mean(found) if found else None for name, found in usable.items()}
     result["least_efficiency"] = min(usable["efficiency"], default=None)
-    shares = [share for share in map(wide_share, rows) if share is not None]
-    result["wide_share"] = sum(shares) / len(shares) if shares else None
     return {**result, "files": len(usable["efficiency"])}
-
-
-def wide_share(row):
-    """Return the share of the vertices that the kernels of many lanes shaded; None if there were no vertices."""
-    record = row["engines"].get("LANCER", {})
-    wide, narrow = record.get("wide_vertices", 0), record.get("narrow_vertices", 0)
-    return wide / (wide + narrow) if wide + narrow else None
 
 
 def rank(rows):

@@ -58,7 +58,7 @@ def render(engine, samples, seed, picture):
     result["size"] = [*rendered.picture.shape[1::-1]]
     if engine == "LANCER":
         statistics = addon.engine.last_statistics[scene.name]
-        wanted = ("build_seconds", "wide_vertices", "narrow_vertices", "kernel", "features", "triangles", "instances", "lights")
+        wanted = ("build_seconds", "kernel", "features", "triangles", "instances", "lights")
         result |= {name: statistics[name] for name in wanted}
         result |= {"messages": list(addon.engine.last_messages[scene.name]), "missing": addon.engine.last_missing[scene.name]}
         result["export_seconds"] = sum(export)

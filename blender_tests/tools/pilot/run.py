@@ -48,7 +48,7 @@ def weights_of_source():
 
 
 def counts_of(statistics_):
-    vertices = statistics_.wide_vertices + statistics_.narrow_vertices
+    vertices = statistics_.vertices
     return np.array([statistics_.camera_rays, statistics_.bounce_rays + statistics_.shadow_rays, vertices], float)
 
 

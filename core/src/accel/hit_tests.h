@@ -9,10 +9,6 @@
 
 namespace lancer {
 
-// Finds the first t with tmin < t < tmax where the ray hits the surface; returns false if there is none. leaves: the ray starts
-// on this surface, so the root at its origin is skipped.
-bool intersect_quadric(const PlacedShape &shape, const Ray &ray, bool leaves, double &t);
-
 // Returns whether a hit of a ray counts; without a filter every hit does.
 struct Counting {
   HitFilter *filter = nullptr;
@@ -41,16 +37,14 @@ inline void try_triangle(const Ray &ray, const RayAxes &axes, const ShearedRay<d
 }
 
 inline void try_quadric(const Ray &ray, const PlacedShape &shape, uint32_t instance, const Counting &counting, Hit &best) {
-  // Search beyond each hit that the filter rejects.
-  Ray rest = ray;
-  double t;
-  while (intersect_quadric(shape, rest, ray.skip_instance == instance, t) && closer(t, instance, 0, best)) {
-    if (const Hit hit{t, 0.0, 0.0, instance, 0}; counting(hit)) {
-      best = hit;
-      return;
-    }
-    rest.tmin = t;
-  }
+  try_places(
+      instance, ray.tmin, best, [&](double &t) { return next_place(shape, instance, ray, t); },
+      [&](const Hit &hit) {
+        if (!counting(hit))
+          return false;
+        best = hit;
+        return true;
+      });
 }
 
 } // namespace lancer

@@ -141,6 +141,27 @@ LANCER_LANE bool enter_frame(const PlacementFrame &frame, const double (&o)[3], 
 // Returns whether the shape is visible to the ray's kind.
 LANCER_LANE bool visible(const PlacedShape &shape, const Ray &ray) { return (ray.kinds & ~shape.hidden_from) != 0; }
 
+// Finds the first t with tmin < t < tmax where the ray hits the exact surface; returns false if there is none. leaves: the ray
+// starts on this surface, so the root at its origin is skipped.
+bool intersect_quadric(const PlacedShape &shape, const Ray &ray, bool leaves, double &t);
+
+// Moves t, at first the ray's tmin, to the next hit on an exact surface; returns false if there is none.
+LANCER_LANE bool next_place(const PlacedShape &shape, uint32_t instance, const Ray &ray, double &t) {
+  if (t == ray.tmin)
+    return intersect_quadric(shape, ray, ray.skip_instance == instance, t);
+  Ray rest = ray;
+  rest.tmin = t;
+  return intersect_quadric(shape, rest, ray.skip_instance == instance, t);
+}
+
+// Stores the first hit on an exact surface that counts, if that hit is closer than the best one. next(t): moves t to the next
+// hit; returns false if there is none. store(hit): returns false where the hit does not count.
+template <class Next, class Store>
+LANCER_LANE void try_places(uint32_t instance, double t, const Hit &best, const Next &next, const Store &store) {
+  while (next(t) && closer(t, instance, 0, best) && !store(Hit{t, 0.0, 0.0, instance, 0})) {
+  }
+}
+
 LANCER_LANE bool enter_shape(const PlacedShape &shape, const Ray &ray, ObjectRay &object_ray) {
   double o[3], d[3];
   to_object_space(shape, ray, o, d);
@@ -153,8 +174,6 @@ LANCER_LANE bool enter_world(const PlacementFrame &world, const Ray &ray, Object
   const double o[3] = {ray.o.x, ray.o.y, ray.o.z}, d[3] = {ray.d.x, ray.d.y, ray.d.z};
   return ray.tmin < ray.tmax && enter_frame(world, o, d, world_ray);
 }
-
-LANCER_LANE double world_t(const ObjectRay &ray, double tau) { return ray.t0 + tau * ray.unit; }
 
 // Bounds on the box-frame parameter of every hit with parameter <= t (above) or >= t (below). t = t0 + tau unit was rounded
 // once and t - t0 is rounded once here: together at most 2^-53 (|t| + |t - t0|) <= 2^-51 (|t| + |t0|). ray: has the t0 and

@@ -11,25 +11,43 @@
 
 namespace lancer {
 
-// Returns tan^2 of a direction's angle to n. Not computed from 1 - cos^2, which loses a small roughness in rounding.
-template <class V> LANCER_LANE NumberOf<V> tan2_theta(const V &w) { return (w.x * w.x + w.y * w.y) / (w.z * w.z); }
+// D: density of microfacet normals per solid angle, anisotropic along the frame's axes; h.z > 0. Below exp(-87) of its maximum
+// it is 0 in float.
+template <class F> LANCER_LANE F beckmann_d(const Vec3<F> &h, F alpha_x, F alpha_y) {
+  const F x = h.x / alpha_x, y = h.y / alpha_y, z2 = h.z * h.z, exponent = (x * x + y * y) / z2;
+  return select(exponent <= 87.0f, exp(-exponent) * kInvPi / (alpha_x * alpha_y * z2 * z2), F(0.0f));
+}
 
-// D: density of microfacet normals per solid angle. Below exp(-87) of its maximum it is 0 in float.
-template <class F> LANCER_LANE F beckmann_d(F tan2, F alpha) {
-  const F alpha2 = alpha * alpha, sec2 = 1.0f + tan2;
-  const auto near = tan2 <= 87.0f * alpha2;
-  if (!any(near))
-    return F(0.0f);
-  return select(near, exp(-tan2 / alpha2) * sec2 * sec2 * kInvPi / alpha2, F(0.0f));
+// Returns the tangential length of a direction after scaling facets of that roughness to roughness 1.
+template <class F> LANCER_LANE F squeezed(const Vec3<F> &w, F alpha_x, F alpha_y) {
+  const F x = alpha_x * w.x, y = alpha_y * w.y;
+  return sqrt(x * x + y * y);
 }
 
 // The masking parameter a = 1 / (alpha tan(theta)); infinite along n.
 template <class F> LANCER_LANE F beckmann_a(const Vec3<F> &w, F alpha) { return w.z / (alpha * sqrt(w.x * w.x + w.y * w.y)); }
 
-// Walter's rational fit of G1, which the model uses as its value; the fit exceeds 1 just below its end.
+// Walter's rational fit of G1 ("Microfacet models for refraction through rough surfaces", 2007): a (first + second a) over
+// 1 + a (third + fourth a).
+namespace walter {
+inline constexpr double kFirst = 3.535, kSecond = 2.181, kThird = 2.276, kFourth = 2.577;
+}
+
+// The fit of G1, which CLASSIC uses as its value; the fit exceeds 1 just below its end.
 template <class F> LANCER_LANE F beckmann_g1(F a) {
-  const F fit = min(F(1.0f), a * (3.535f + 2.181f * a) / (1.0f + a * (2.276f + 2.577f * a)));
+  using namespace walter;
+  const F fit = min(F(1.0f), a * (float(kFirst) + float(kSecond) * a) / (1.0f + a * (float(kThird) + float(kFourth) * a)));
   return select(a < 1.6f, fit, F(1.0f));
+}
+
+// The area of facets hidden from w, Smith's Lambda times |cos|, by the same fit: Lambda = 1 / G1 - 1. As in Cycles, it is
+// exactly 0 for small slopes.
+template <class F> LANCER_LANE F beckmann_hidden(const Vec3<F> &w, F alpha_x, F alpha_y) {
+  using namespace walter;
+  const F along = squeezed(w, alpha_x, alpha_y), a = abs(w.z) / along;
+  const F fit = along * max(F(0.0f), (1.0f + a * (float(kFourth - kSecond) * a - float(kFirst - kThird))) /
+                                         (float(kFirst) + float(kSecond) * a));
+  return select(a * a * 0.39f <= F(1.0f), fit, F(0.0f));
 }
 
 // Beyond this a, masking removes less than erfc(4) = 2e-8, below the precision of float.

@@ -87,14 +87,14 @@ template <class F> LANCER_LANE Stretched<F> glossy_roughness(Bsdf<F> &bsdf, cons
 // The Metallic node: as in Principled.
 template <class F> LANCER_LANE Stretched<F> conductor_roughness(Bsdf<F> &bsdf, const LobeInputs<F> &inputs, const Vec3<F> &n) {
   const F alpha = alpha_of(inputs.roughness), anisotropy = clamp01(inputs.anisotropy);
-  const F aspect = sqrt(1.0f - 0.9f * anisotropy);
+  const F aspect = aspect_of(anisotropy);
   return stretched(bsdf, inputs, n, normal_or_shading(bsdf, inputs.normal), alpha, anisotropy != F(0.0f), 1.0f / aspect,
                    aspect);
 }
 
 // Returns the index as seen from wo's side; Cycles clamps the node's away from 0.
 template <class F> LANCER_LANE F index_from(MaskOf<F> inside, F ior) {
-  const F outside = max(ior, F(1e-5f));
+  const F outside = max(ior, F(kSmallestIor));
   return select(inside, 1.0f / outside, outside);
 }
 

@@ -44,9 +44,18 @@ template <class F> LANCER_LANE DeltaDirection<F> dielectric_sample(const Lobe<F>
 // Below this roughness a float half vector cannot distinguish directions of the lobe: it becomes a mirror weighted with F.
 inline constexpr float kMirrorAlpha = 2e-5f;
 
+// Beckmann's D in the form of the course's texts, for one roughness. It rounds otherwise than facet_d(), in the last bits.
+template <class F> LANCER_LANE F coating_d(F tan2, F alpha) {
+  const F alpha2 = alpha * alpha, sec2 = 1.0f + tan2;
+  const auto near = tan2 <= 87.0f * alpha2;
+  if (!any(near))
+    return F(0.0f);
+  return select(near, exp(-tan2 / alpha2) * sec2 * sec2 * kInvPi / alpha2, F(0.0f));
+}
+
 // Returns D if h is the half vector of a reflection, else 0.
 template <class F> LANCER_LANE F coating_d(const Lobe<F> &lobe, const Vec3<F> &wo, const Vec3<F> &h) {
-  return select((h.z > 0.0f) & (dot(wo, h) > 0.0f), beckmann_d(tan2_theta(h), lobe.alpha_x), F(0.0f));
+  return select((h.z > 0.0f) & (dot(wo, h) > 0.0f), coating_d(tan2_theta(h), lobe.alpha_x), F(0.0f));
 }
 
 // f; d: coating_d().

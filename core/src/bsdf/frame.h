@@ -38,4 +38,7 @@ Frame(const glm::vec3 &, const glm::vec3 &)->Frame<float>;
 // Returns the mirrored direction in the local frame.
 template <class V> LANCER_LANE V reflect_local(const V &w) { return {-w.x, -w.y, w.z}; }
 
+// Returns tan^2 of a direction's angle to n. Not computed from 1 - cos^2, which loses a small roughness in rounding.
+template <class V> LANCER_LANE NumberOf<V> tan2_theta(const V &w) { return (w.x * w.x + w.y * w.y) / (w.z * w.z); }
+
 } // namespace lancer

@@ -6,6 +6,9 @@
 
 namespace lancer {
 
+// Returns how far anisotropy in 0 ... 1 stretches facets: roughness along the tangent is divided by it, across multiplied.
+template <class F> LANCER_LANE F aspect_of(F anisotropy) { return sqrt(max(F(0.0f), 1.0f - 0.9f * anisotropy)); }
+
 // The formulas of a lobe.
 enum class LobeShape : uint8_t {
   Lambert = 0,    // color / pi

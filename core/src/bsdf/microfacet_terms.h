@@ -18,12 +18,6 @@ template <class F> LANCER_LANE F ggx_d(const Vec3<F> &h, F alpha_x, F alpha_y) {
   return kInvPi / (alpha_x * alpha_y * length2 * length2);
 }
 
-// Returns the tangential length of a direction after scaling facets of that roughness to roughness 1.
-template <class F> LANCER_LANE F squeezed(const Vec3<F> &w, F alpha_x, F alpha_y) {
-  const F x = alpha_x * w.x, y = alpha_y * w.y;
-  return sqrt(x * x + y * y);
-}
-
 // Returns the area of facets hidden from w: Smith's Lambda times |cos|, finite at grazing angles.
 template <class F> LANCER_LANE F ggx_hidden(const Vec3<F> &w, F alpha_x, F alpha_y) {
   const F along = squeezed(w, alpha_x, alpha_y), z = abs(w.z);
@@ -46,23 +40,12 @@ template <class F> LANCER_LANE Vec3<F> ggx_sample_visible(const Vec3<F> &wo, F a
 // An index closer to 1 than this does not bend light, as in Cycles.
 inline constexpr float kStraightIor = 1e-4f;
 
-// ggx_hidden() for Beckmann by Walter's rational fit of Lambda, as in Cycles: exactly 0 for small slopes.
-template <class F> LANCER_LANE F beckmann_hidden(const Vec3<F> &w, F alpha_x, F alpha_y) {
-  const F along = squeezed(w, alpha_x, alpha_y), a = abs(w.z) / along;
-  const F fit = along * max(F(0.0f), (1.0f + a * (0.396f * a - 1.259f)) / (3.535f + 2.181f * a));
-  return select(a * a * 0.39f <= F(1.0f), fit, F(0.0f));
-}
-
 template <class F> LANCER_LANE F facet_hidden(const Lobe<F> &lobe, const Vec3<F> &w) {
   return lobe.beckmann ? beckmann_hidden(w, lobe.alpha_x, lobe.alpha_y) : ggx_hidden(w, lobe.alpha_x, lobe.alpha_y);
 }
 
 template <class F> LANCER_LANE F facet_d(const Lobe<F> &lobe, const Vec3<F> &h) {
-  if (!lobe.beckmann)
-    return ggx_d(h, lobe.alpha_x, lobe.alpha_y);
-  const F x = h.x / lobe.alpha_x, y = h.y / lobe.alpha_y, z2 = h.z * h.z, exponent = (x * x + y * y) / z2;
-  // Below exp(-87) of its maximum it is 0 in float.
-  return select(exponent <= 87.0f, exp(-exponent) * kInvPi / (lobe.alpha_x * lobe.alpha_y * z2 * z2), F(0.0f));
+  return lobe.beckmann ? beckmann_d(h, lobe.alpha_x, lobe.alpha_y) : ggx_d(h, lobe.alpha_x, lobe.alpha_y);
 }
 
 // Returns the exact visible share of Beckmann's facets from w.

@@ -34,7 +34,7 @@ template <class F> struct Grain {
   MaskOf<F> stretched; // anisotropic along the rotated tangent
 };
 template <class F> LANCER_LANE Grain<F> grain_of(const LobeInputs<F> &lobe, F roughness, F anisotropic) {
-  const F alpha = roughness * roughness, aspect = sqrt(max(F(0.0f), 1.0f - 0.9f * anisotropic));
+  const F alpha = roughness * roughness, aspect = aspect_of(anisotropic);
   const MaskOf<F> stretched = (anisotropic > 0.0f) & !black(lobe.tangent);
   return {select(stretched, clamp01(alpha / aspect), alpha), select(stretched, alpha * aspect, alpha), stretched};
 }
@@ -81,7 +81,7 @@ template <class F> LANCER_LANE Vec3<F> through_coat(const Vec3<F> &tint, F cos_o
 // Returns the index of the plastic, adjusted by the specular level, on its own side of 1; f0: its reflectance at normal
 // incidence.
 template <class F> LANCER_LANE F plastic_ior(const PrincipledInputs<F> &in, F &f0) {
-  const F ior = max(in.ior, F(1e-5f));
+  const F ior = max(in.ior, F(kSmallestIor));
   f0 = f0_of_ior(ior);
   const MaskOf<F> moved = in.specular != F(0.5f);
   if (!any(moved))
@@ -109,7 +109,7 @@ LANCER_LANE MicrofacetPlan<F> plan_layer(PrincipledLayer layer, const LobeInputs
     break;
   }
   case PrincipledLayer::Glass: {
-    const F alpha = alpha_of(in.roughness), ior = max(in.ior, F(1e-5f));
+    const F alpha = alpha_of(in.roughness), ior = max(in.ior, F(kSmallestIor));
     lobe = make_microfacet(Scatter::Both, 0, one, alpha, alpha, in.rules);
     set_schlick(lobe, clamp01(f0_of_ior(ior) * positive(in.specular_tint)), one, select(inside, 1.0f / ior, ior), one,
                 sqrt(clamp01(positive(in.base_color))));

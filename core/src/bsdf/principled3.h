@@ -102,7 +102,7 @@ template <class F> void add_sum3(Bsdf<F> &bsdf, const LobeInputs<F> &lobe, const
   }
   const MaskOf<F> is_glass = glass > kLeastLayer;
   if (any(is_glass)) {
-    const F ior = max(in.ior, F(1e-5f));
+    const F ior = max(in.ior, F(kSmallestIor));
     const uint8_t plain = any(grain.stretched) ? add_frame(bsdf, n) : frame;
     add_glass3(bsdf, plain, select(is_glass, glass * lobe.weight, none), in, select(bsdf.inside, 1.0f / ior, ior));
   }

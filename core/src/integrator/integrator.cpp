@@ -5,7 +5,7 @@
 namespace lancer {
 
 std::unique_ptr<Integrator> make_integrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings) {
-  switch (settings.kind) {
+  switch (settings.kind()) {
   case IntegratorKind::Classic:
     return std::make_unique<ClassicIntegrator>(scene, camera, settings);
   case IntegratorKind::Normals:

@@ -2,54 +2,15 @@
 #pragma once
 
 #include "compile/scene.h"
-#include "sampling/pixel_filter.h"
+#include "integrator/settings.h"
 #include "scene/camera.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <vector>
 
 namespace lancer {
-
-enum class IntegratorKind : uint32_t { Path = 0, Classic = 1, Normals = 2 };
-
-// Splitting of a sample (Arvo, Kirk, "Particle transport and image synthesis", 1990). The sample splits at the first surface of
-// its path that scatters into more than single directions. The place on the pixel and the path before the split are shared.
-struct Splits {
-  uint32_t lights = 1; // lights sampled there
-  uint32_t paths = 1;  // paths continued from there
-
-  bool any() const { return lights > 1 || paths > 1; }
-  bool operator==(const Splits &) const = default;
-};
-
-struct IntegratorSettings {
-  IntegratorKind kind = IntegratorKind::Path;
-  uint32_t samples = 1; // planned per pixel
-  uint32_t seed = 0;
-  uint32_t max_bounces = 10;
-  float contribution_threshold = 0.0f;
-  float clamp_indirect = 0.0f;
-  Splits splits{};
-  FilterKind filter = FilterKind::BlackmanHarris;
-  float filter_width = 1.5f;
-  bool film_transparent = false;
-  bool transparent_glass = false;
-  float glass_alpha2 = 0.0f; // glass of at most this alpha_x alpha_y leaves the film transparent
-  uint32_t transparent_bounces = 8, transparent_shadows = 8;
-  float alpha_threshold = 0.5f;         // the first surface of at least this opacity gives depth, normal, position, indices, UV
-  bool environment_reflections = false; // CLASSIC
-  double occlusion_distance = 0.0;      // scene units; 0 = any
-  float mist_start = 5.0f, mist_depth = 25.0f, mist_falloff = 2.0f;
-  bool blended_features = false; // denoising guides as in Blender 5.2
-  uint32_t passes = 1;           // bits 1u << Pass of render/pass.h
-  bool all_features = false;
-  const std::atomic<bool> *cancel = nullptr; // raised: a batch may end with invalid results
-
-  bool cancelled() const { return cancel && *cancel; }
-};
 
 // The address of one sample: pixel of the region and number.
 struct SampleAddress {
@@ -100,17 +61,6 @@ struct RayCounts {
   }
 };
 
-// Vertices on surfaces: shaded in lanes, or one by one.
-struct VertexCounts {
-  uint64_t wide = 0, narrow = 0;
-
-  VertexCounts &operator+=(const VertexCounts &other) {
-    wide += other.wide;
-    narrow += other.narrow;
-    return *this;
-  }
-};
-
 // Luminance that settings remove from the picture, summed over samples.
 struct Energy {
   double clipped = 0.0;                 // by clamping
@@ -156,13 +106,14 @@ public:
   // Returns the name of the specialisation in use, for the statistics.
   virtual const char *kernel() const = 0;
   const RayCounts &counts() const { return counts_; }
-  const VertexCounts &vertices() const { return vertices_; }
+  // Vertices on surfaces.
+  uint64_t vertices() const { return vertices_; }
   // Of the last batch.
   const Energy &energy() const { return energy_; }
 
 protected:
   RayCounts counts_;
-  VertexCounts vertices_;
+  uint64_t vertices_ = 0;
   Energy energy_;
 };
 

@@ -56,6 +56,11 @@ inline constexpr float kNearest2 = 0x1p-40f, kLeastImportance = 0x1p-60f;
 
 template <class F> LANCER_LANE F sine_of(F cosine) { return sqrt(max(F(0.0f), (F(1.0f) - cosine) * (F(1.0f) + cosine))); }
 
+// Returns the cosine of an angle that is reduced by another one, at most to 0; the sines are those of both angles.
+template <class F> LANCER_LANE F reduced(F cosine, F sine, F cos_by, F sin_by) {
+  return select(cosine >= cos_by, F(1.0f), cosine * cos_by + sine * sin_by);
+}
+
 // Returns the importance where a condition holds, 0 elsewhere.
 template <class F> LANCER_LANE Importance<F> where(MaskOf<F> holds, const Importance<F> &importance) {
   const F zero(0.0f);
@@ -70,7 +75,7 @@ LANCER_LANE Importance<F> importance(const LightQueryLanes<F> &query, const Ligh
   const F zero(0.0f), one(1.0f), slack(kCosineSlack);
   // Cosines of the smallest and the largest angle at which light may arrive.
   const F along = dot(view.to, query.n), cos_i = select(query.transmits, abs(along), along), sin_i = sine_of(cos_i);
-  const F cos_i_least = select(cos_i >= view.cos_u, one, cos_i * view.cos_u + sin_i * view.sin_u);
+  const F cos_i_least = reduced(cos_i, sin_i, view.cos_u, view.sin_u);
   const F cos_i_most = max(cos_i * view.cos_u - sin_i * view.sin_u, zero);
   // Cosines of the angles at which light may leave.
   const F sin_theta = sine_of(cos_theta);
@@ -141,7 +146,7 @@ LANCER_LANE Importance<F> round_importance(const LightQueryLanes<F> &query, cons
     return importance(query, view, ConeCosines<F>(0.0f), one, energy);
   // The largest transmission of the spot's rim towards the angle that the light subtends.
   const F cos_theta = -dot(Vector3<F>(light.axis), to);
-  const F best = select(cos_theta >= view.cos_u, one, cos_theta * view.cos_u + sine_of(cos_theta) * view.sin_u);
+  const F best = reduced(cos_theta, sine_of(cos_theta), view.cos_u, view.sin_u);
   const F inside = best - F(light.cos_e) + F(kCosineSlack);
   const F t = select(inside < F(light.blend), inside / F(light.blend), one);
   const F passed = max(energy * t * t * (F(3.0f) - F(2.0f) * t), F(kLeastImportance));

@@ -34,7 +34,7 @@ LANCER_LANE F weigh(const LightBranch &branch, const LightAim *aim, const LightW
   const F sin_u = select(outside, radius * per_d, zero), cos_u = select(outside, sine_of(sin_u), F(-1.0f));
   // The smallest angle at which light may arrive.
   const F one_side = along * per_d, cos_i = walk.transmits ? abs(one_side) : one_side;
-  const F arrives = select(cos_i >= cos_u, one, cos_i * cos_u + sine_of(cos_i) * sin_u);
+  const F arrives = reduced(cos_i, sine_of(cos_i), cos_u, sin_u);
   F most = energy * max(arrives, little) * min(per_d * per_d, load(branch.per_near2 + first));
   if (any(!equal(load(branch.child + first) & U(LightBranch::kAimed), U(0u)))) {
     // The smallest angle at which light may leave.

@@ -159,7 +159,7 @@ template <class F> LANCER_LANE F cosine_to_viewer(const Inputs<F> &in, const Sit
 }
 
 template <class F> Value<F> fresnel_node(const Inputs<F> &in, const Site<F> &site) {
-  const F ior = max(in.scalar(0), F(1e-5f));
+  const F ior = max(in.scalar(0), F(kSmallestIor));
   return scalar(fresnel_dielectric(cosine_to_viewer(in, site), select(site.backfacing, F(1.0f) / ior, ior)));
 }
 

@@ -14,7 +14,7 @@ constexpr uint64_t kProjectedEach = 8;
 } // namespace
 
 Background find_background(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const Film &film) {
-  if (settings.kind != IntegratorKind::Path || settings.samples < kLeastPlanned || settings.all_features ||
+  if (settings.kind() != IntegratorKind::Path || settings.samples < kLeastPlanned || settings.all_features() ||
       !has_even_background(scene, camera))
     return Background();
   Background background;

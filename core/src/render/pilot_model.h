@@ -18,8 +18,8 @@ struct CostModel {
   uint64_t ray = 20;
   uint64_t vertex = 15;
 
-  constexpr uint64_t of(const RayCounts &rays, const VertexCounts &vertices) const {
-    return camera_ray * rays.camera + ray * (rays.bounce + rays.shadow) + vertex * (vertices.wide + vertices.narrow);
+  constexpr uint64_t of(const RayCounts &rays, uint64_t vertices) const {
+    return camera_ray * rays.camera + ray * (rays.bounce + rays.shadow) + vertex * vertices;
   }
 };
 

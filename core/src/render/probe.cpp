@@ -92,7 +92,7 @@ void probe_microfacet(uint32_t count, const float *cos_nh, const float *cos_lh, 
     return glm::vec3(float(std::sqrt((1.0 - c) * (1.0 + c))), 0.0f, cosine);
   };
   for (uint32_t i = 0; i < count; ++i) {
-    d[i] = cos_nh[i] > 0.0f ? beckmann_d(tan2_theta(direction(cos_nh[i])), alpha[i]) : 0.0f;
+    d[i] = cos_nh[i] > 0.0f ? coating_d(tan2_theta(direction(cos_nh[i])), alpha[i]) : 0.0f;
     f[i] = fresnel_dielectric(cos_lh[i], ior[i]);
     g1[i] = cos_nv[i] > 0.0f ? beckmann_g1(beckmann_a(direction(cos_nv[i]), alpha[i])) : 0.0f;
   }

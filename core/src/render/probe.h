@@ -2,7 +2,7 @@
 #pragma once
 
 #include "compile/scene.h"
-#include "lancer.h"
+#include "lancer_probes.h"
 #include "render/session.h"
 #include "scene/error.h"
 

@@ -26,15 +26,15 @@ Camera normalised(Camera camera, const Normalisation &normalisation) {
 }
 
 // Throws Error for a film that exceeds the machine's memory.
-const Camera &checked_memory(const Camera &camera, const SessionSettings &settings) {
-  const uint32_t samples = std::max(settings.integrator.samples, 1u);
+const Camera &checked_memory(const Camera &camera, const IntegratorSettings &settings) {
+  const uint32_t samples = std::max(settings.samples, 1u);
   check_memory("film: " + std::to_string(camera.region_width) + " x " + std::to_string(camera.region_height) + " pixels, " +
                    std::to_string(samples) + " samples",
                Film::bytes_needed(camera.region_width, camera.region_height, settings.passes, samples));
   return camera;
 }
 
-uint32_t tile_size(const Camera &camera, const SessionSettings &settings, uint32_t threads) {
+uint32_t tile_size(const Camera &camera, const IntegratorSettings &settings, uint32_t threads) {
   if (settings.refines)
     return kRefinedSize;
   if (settings.tile_size)
@@ -48,16 +48,16 @@ uint32_t tile_size(const Camera &camera, const SessionSettings &settings, uint32
 
 } // namespace
 
-Session::Session(std::shared_ptr<const Scene> scene, const Camera &camera, const SessionSettings &settings)
+Session::Session(std::shared_ptr<const Scene> scene, const Camera &camera, const IntegratorSettings &settings)
     : scene_(std::move(scene)), camera_(normalised(checked_memory(camera, settings), scene_->normalisation)),
       settings_(settings),
       film_(camera.region_width, camera.region_height, tile_size(camera, settings, ThreadPool::resolved(settings.threads)),
             settings.passes, settings.refines),
       pool_(settings.threads) {
-  settings_.integrator.cancel = &cancel_;
-  splits_ = settings_.integrator.splits;
+  settings_.cancel = &cancel_;
+  splits_ = settings_.splits;
   for (uint32_t i = 0; i < pool_.size(); ++i)
-    workers_.push_back(std::make_unique<TileWorker>(*scene_, camera_, settings_.integrator));
+    workers_.push_back(std::make_unique<TileWorker>(*scene_, camera_, settings_));
 }
 
 Session::~Session() { cancel_ = true; }
@@ -105,7 +105,7 @@ bool Session::refine(double target, double confidence) {
   // The error at which its upper bound, together with the light that may be missing, meets the target.
   const double bound = error.high + error.cannot_exclude;
   const double goal = bound > 0.0 ? target * error.error / bound : target;
-  const Refinement refinement = plan_refinement(film_, map, relative, goal, settings_.integrator.samples);
+  const Refinement refinement = plan_refinement(film_, map, relative, goal, settings_.samples);
   planned_samples_ = refinement.samples;
   if (refinement.tiles.empty())
     return false;
@@ -133,8 +133,8 @@ void Session::start() {
   background_found_.reset();
   if (film_.sample_range().second == 0) {
     background_found_ = std::make_unique<std::latch>(1);
-    if (settings_.finds_splits)
-      pilot_ = std::make_unique<Pilot>(*scene_, camera_, background_, settings_.integrator, pool_.size());
+    if (finds_splits())
+      pilot_ = std::make_unique<Pilot>(*scene_, camera_, background_, settings_, pool_.size());
   }
   pool_.start([this](uint32_t thread) { work(thread); });
 }
@@ -174,7 +174,7 @@ void Session::look_for_background(uint32_t thread) {
     std::latch &found;
     ~Leave() { found.count_down(); }
   } const leave{*background_found_};
-  background_ = find_background(*scene_, camera_, settings_.integrator, film_);
+  background_ = find_background(*scene_, camera_, settings_, film_);
 }
 
 void Session::find_splits(uint32_t thread) {
@@ -208,8 +208,13 @@ RayCounts Session::rays() const {
   return sum;
 }
 
-VertexCounts Session::vertices() const {
-  VertexCounts sum;
+bool Session::finds_splits() const {
+  return settings_.kind() == IntegratorKind::Path && settings_.samples >= Pilot::kLeastPlanned && settings_.split_lights == 0 &&
+         settings_.split_paths == 0;
+}
+
+uint64_t Session::vertices() const {
+  uint64_t sum = 0;
   for (const auto &worker : workers_)
     sum += worker->vertices();
   return sum;
@@ -261,7 +266,7 @@ void Session::read(Pass pass, std::span<float> out) const {
 }
 
 SampleResult Session::replay(const SampleAddress &address, std::vector<PathVertex> &vertices) {
-  IntegratorSettings settings = settings_.integrator;
+  IntegratorSettings settings = settings_;
   settings.cancel = nullptr;
   settings.splits = splits_;
   const auto integrator = make_integrator(*scene_, camera_, settings);

@@ -14,17 +14,8 @@
 
 namespace lancer {
 
-struct SessionSettings {
-  IntegratorSettings integrator;
-  uint32_t passes = 1;
-  uint32_t threads = 0;
-  uint32_t tile_size = 0;
-  bool refines = false;      // the film is laid out for refine()
-  bool finds_splits = false; // the session has to find integrator.splits
-};
-
 // Checks and copies settings; throws Error with the name of the setting and its value.
-SessionSettings read_settings(const lancer_settings &source);
+IntegratorSettings read_settings(const lancer_settings &source);
 FilterKind read_filter(uint32_t filter, float width);
 
 struct Progress {
@@ -36,7 +27,7 @@ struct SessionStatistics {
   double render_seconds = 0.0;
   uint64_t samples = 0;
   RayCounts rays;
-  VertexCounts vertices;
+  uint64_t vertices = 0;
   uint64_t invalid_samples = 0;
   SampleAddress first_invalid{0, 0, 0};
   uint32_t threads = 0;
@@ -57,7 +48,7 @@ struct SessionError {
 class Session {
 public:
   // camera in world units. Throws Error when camera, settings or memory do not allow the film.
-  Session(std::shared_ptr<const Scene> scene, const Camera &camera, const SessionSettings &settings);
+  Session(std::shared_ptr<const Scene> scene, const Camera &camera, const IntegratorSettings &settings);
   ~Session();
 
   // Starts samples first ... first + count - 1; throws Error when first does not follow the last sample, or while another range
@@ -93,11 +84,14 @@ private:
   void settle();
   double seconds() const;
   RayCounts rays() const;
-  VertexCounts vertices() const;
+  uint64_t vertices() const;
 
   std::shared_ptr<const Scene> scene_;
   Camera camera_; // normalised
-  SessionSettings settings_;
+  // Whether the session has to find how samples split.
+  bool finds_splits() const;
+
+  IntegratorSettings settings_;
   Film film_;
   std::vector<std::unique_ptr<TileWorker>> workers_;
   std::atomic<bool> cancel_{false}, stop_{false};

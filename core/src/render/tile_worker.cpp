@@ -106,7 +106,7 @@ RayCounts TileWorker::rays() const {
   return rays_;
 }
 
-VertexCounts TileWorker::vertices() const {
+uint64_t TileWorker::vertices() const {
   const std::lock_guard lock(mutex_);
   return vertices_;
 }

@@ -23,7 +23,7 @@ public:
 
   // Totals of all batches that the film has received; may be called while rendering.
   RayCounts rays() const;
-  VertexCounts vertices() const;
+  uint64_t vertices() const;
   Energy energy() const;
 
 private:
@@ -41,7 +41,7 @@ private:
   // Members that other threads read.
   mutable std::mutex mutex_;
   RayCounts rays_;
-  VertexCounts vertices_;
+  uint64_t vertices_ = 0;
   Energy energy_;
 };
 

@@ -11,8 +11,6 @@ namespace lancer {
 
 namespace {
 
-constexpr uint32_t kMostNodes = 4096;
-
 // Data that a kind of node reads: the number of inputs, the number of options, whether the matrix is used.
 struct Shape {
   int inputs;
@@ -246,8 +244,8 @@ uint32_t attribute_name(Description &description, const std::string &name) {
 }
 
 Program read_program(Description &description, const std::string &owner, const lancer_node *nodes, uint32_t count) {
-  if (count > kMostNodes)
-    bad_argument(owner + ": " + std::to_string(count) + " nodes > " + std::to_string(kMostNodes));
+  if (count > LANCER_MOST_NODES)
+    bad_argument(owner + ": " + std::to_string(count) + " nodes > " + std::to_string(LANCER_MOST_NODES));
   if (count && !nodes)
     bad_argument(owner + ": nodes is NULL for " + std::to_string(count) + " nodes");
   ProgramReader reader(description, owner);

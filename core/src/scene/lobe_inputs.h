@@ -36,6 +36,9 @@ enum class Facets : uint32_t { Ggx = 0, Beckmann = 1, AshikhminShirley = 2, Mult
 // The Blender versions whose definitions hold: 3.x, 4.0 to 4.4, 4.5, 5.0 and 5.1, 5.2 and newer.
 enum class Rules : uint32_t { Blender3 = 0, Blender4 = 1, Blender45 = 2, Blender50 = 3, Blender52 = 4 };
 
+// Blender's smallest index of refraction; the lobes of CLASSIC use any index.
+inline constexpr float kSmallestIor = 1e-5f;
+
 // Kinds of parameters, see lancer_parameter.
 enum class ParameterKind { Color, Share, Amount, Index, Denser, Turns, Direction, Vector };
 constexpr bool is_of_three(ParameterKind kind) {

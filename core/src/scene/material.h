@@ -71,9 +71,6 @@ struct PlaceValues {
   glm::vec3 operator()(const Parameter &parameter) const { return value_of(parameter, values); }
 };
 
-// Blender's smallest index; the lobes of CLASSIC use any index.
-inline constexpr float kSmallestIor = 1e-5f;
-
 // Reads parameters and clamps them to the range of their model; NaN becomes the lower end of the range, or 0. Values: a
 // function that returns a parameter's value in every lane.
 template <class F, class Values> struct ParameterReader {

@@ -1,4 +1,5 @@
 #include "whole_render.h"
+#include "lancer_probes.h"
 
 #include "../tiny_scene.h"
 #include "whole_scene.h"

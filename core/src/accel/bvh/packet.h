@@ -60,9 +60,9 @@ struct PacketAsks {
   HitFilter *filter;
 };
 
-// Keeps a closer hit if it passes the filter.
+// Stores a closer hit if it passes the filter.
 template <Question q>
-LANCER_LANE bool keep_hit(const PacketAsks &asks, Leftovers &l, PacketSlabs &slabs, uint32_t lane, const Hit &hit) {
+LANCER_LANE bool store_hit(const PacketAsks &asks, Leftovers &l, PacketSlabs &slabs, uint32_t lane, const Hit &hit) {
   if (left_out<q>(asks.filter, asks.number[lane], hit))
     return false;
   l.best[lane] = hit;
@@ -72,18 +72,18 @@ LANCER_LANE bool keep_hit(const PacketAsks &asks, Leftovers &l, PacketSlabs &sla
 }
 
 template <Question q>
-LANCER_LANE void try_quadric(const BvhScene &scene, uint32_t instance, const PacketAsks &asks, uint32_t active,
-                             PacketSlabs &slabs, Leftovers &l) {
+LANCER_LANE void visit_quadric(const BvhScene &scene, uint32_t instance, const PacketAsks &asks, uint32_t active,
+                               PacketSlabs &slabs, Leftovers &l) {
   const PlacedShape &shape = scene.shapes[instance];
   for (; active != 0; active &= active - 1) {
     const uint32_t lane = static_cast<uint32_t>(__builtin_ctz(active));
     const Ray &ray = *asks.rays[lane];
     if (!visible(shape, ray))
       continue;
-    double t = ray.tmin;
-    while (next_place(shape, instance, ray, t) && closer(t, instance, 0, l.best[lane]) &&
-           !keep_hit<q>(asks, l, slabs, lane, {t, 0.0, 0.0, instance, 0})) {
-    }
+    try_places(
+        instance, ray.tmin,
+        l.best[lane], [&](double &t) __attribute__((always_inline)) { return next_place(shape, instance, ray, t); },
+        [&](const Hit &hit) __attribute__((always_inline)) { return store_hit<q>(asks, l, slabs, lane, hit); });
   }
 }
 
@@ -102,10 +102,12 @@ LANCER_LANE void visit_spheres(const BvhScene &scene, const SphereBlock &block, 
       const PlacedShape &shape = scene.shapes[instance];
       if (!visible(shape, ray))
         continue;
-      double t = e.tmin[lane];
-      while (choose_root(roots, i, shape.slack, ray.skip_instance == instance, t, e.tmax[lane], t) &&
-             closer(t, instance, 0, l.best[lane]) && !keep_hit<q>(asks, l, slabs, lane, {t, 0.0, 0.0, instance, 0})) {
-      }
+      try_places(
+          instance, e.tmin[lane], l.best[lane],
+          [&](double &t) __attribute__((always_inline)) {
+            return choose_root(roots, i, shape.slack, ray.skip_instance == instance, t, e.tmax[lane], t);
+          },
+          [&](const Hit &hit) __attribute__((always_inline)) { return store_hit<q>(asks, l, slabs, lane, hit); });
     }
   }
 }
@@ -136,8 +138,8 @@ LANCER_LANE void visit_triangles(const TriangleBlock &block, const PacketAsks &a
         const uint32_t primitive = block.primitive[i & 3];
         const bool skipped = asks.rays[lane]->skip_instance == p.instance && asks.rays[lane]->skip_primitive == primitive;
         if (!skipped && closer(hits.t[i], p.instance, primitive, l.best[lane]))
-          keep_hit<q>(asks, l, slabs, lane,
-                      {hits.t[i], hits.wb[i] / hits.det[i], hits.wc[i] / hits.det[i], p.instance, primitive});
+          store_hit<q>(asks, l, slabs, lane,
+                       {hits.t[i], hits.wb[i] / hits.det[i], hits.wc[i] / hits.det[i], p.instance, primitive});
       }
     }
   }
@@ -255,7 +257,7 @@ template <Question q>
   for (uint32_t i = 0; i < scene.unbounded_count; ++i) {
     const uint32_t instance = scene.unbounded[i];
     if (scene.shapes[instance].mesh == kNone)
-      try_quadric<q>(scene, instance, asks, kAllOfPacket, e, l);
+      visit_quadric<q>(scene, instance, asks, kAllOfPacket, e, l);
     else
       leave_over(kBvhInstance << kBvhKindShift | instance * kBvhSteps<PlacedShape>, kAllOfPacket, nullptr, l);
   }
@@ -296,7 +298,7 @@ template <Question q>
             const uint32_t instance = (child & kBvhPlace) / kBvhSteps<PlacedShape>;
             const PlacedShape &shape = scene.shapes[instance];
             if (shape.mesh == kNone) {
-              try_quadric<q>(scene, instance, asks, active, e, l);
+              visit_quadric<q>(scene, instance, asks, active, e, l);
             } else if (const BvhView &bvh = scene.meshes[shape.mesh]; bvh.nodes) {
               alignas(64) double limit[kPacket];
               for (uint32_t i = 0; i < kPacket; ++i)

@@ -8,9 +8,6 @@
 
 namespace lancer {
 
-// Defined in quadric.cpp, which is compiled once.
-bool intersect_quadric(const PlacedShape &shape, const Ray &ray, bool leaves, double &t);
-
 namespace {
 
 // The variant of a query, a template parameter of the traversal.
@@ -26,15 +23,6 @@ template <Question q> LANCER_LANE bool left_out(HitFilter *filter, size_t number
     return filter->instances[hit.instance] != 0 && !filter->counts(number, hit);
   else
     return false;
-}
-
-// Moves t to the ray's next hit on an exact surface beyond t; returns false if there is none.
-LANCER_LANE bool next_place(const PlacedShape &shape, uint32_t instance, const Ray &ray, double &t) {
-  if (t == ray.tmin)
-    return intersect_quadric(shape, ray, ray.skip_instance == instance, t);
-  Ray rest = ray;
-  rest.tmin = t;
-  return intersect_quadric(shape, rest, ray.skip_instance == instance, t);
 }
 
 // Rays in flight per thread: while one waits for its node or block, the others proceed.

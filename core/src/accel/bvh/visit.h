@@ -39,25 +39,26 @@ LANCER_LANE void become_mesh_ray(const BvhScene &scene, uint32_t instance, const
   s.usable = visible(shape, ray) && enter_mesh(shape, ray, s.ray);
 }
 
-// Keeps the first hit on an exact surface that passes the filter, if that hit is closer than the best hit. find(t): moves t to
-// the next hit; returns false if there is none.
-template <Question q, class Find> LANCER_LANE void try_places(uint32_t instance, HitFilter *filter, Slot &s, Find find) {
-  double t = s.tmin;
-  while (find(t) && closer(t, instance, 0, s.best)) {
-    const Hit hit{t, 0.0, 0.0, instance, 0};
-    if (left_out<q>(filter, s.number, hit))
-      continue;
-    s.best = hit;
-    if (q.any)
-      done(s);
-    else
-      shorten(s);
-    return;
-  }
+// Stores a closer hit if it passes the filter.
+template <Question q> LANCER_LANE bool store_hit(HitFilter *filter, Slot &s, const Hit &hit) {
+  if (left_out<q>(filter, s.number, hit))
+    return false;
+  s.best = hit;
+  if (q.any)
+    done(s);
+  else
+    shorten(s);
+  return true;
+}
+
+template <Question q, class Next> LANCER_LANE void try_places(uint32_t instance, HitFilter *filter, Slot &s, const Next &next) {
+  try_places(
+      instance, s.tmin, s.best,
+      next, [&](const Hit &hit) __attribute__((always_inline)) { return store_hit<q>(filter, s, hit); });
 }
 
 template <Question q>
-LANCER_LANE void try_quadric(const PlacedShape &shape, uint32_t instance, const Ray &ray, HitFilter *filter, Slot &s) {
+LANCER_LANE void visit_quadric(const PlacedShape &shape, uint32_t instance, const Ray &ray, HitFilter *filter, Slot &s) {
   if (visible(shape, ray))
     try_places<q>(
         instance, filter, s, [&](double &t) __attribute__((always_inline)) { return next_place(shape, instance, ray, t); });
@@ -87,7 +88,7 @@ template <Question q> LANCER_LANE void enter_instance(const BvhScene &scene, con
   const PlacedShape &shape = *reinterpret_cast<const PlacedShape *>(s.at);
   const uint32_t instance = static_cast<uint32_t>(&shape - scene.shapes);
   if (shape.mesh == kNone)
-    return try_quadric<q>(shape, instance, ray, filter, s);
+    return visit_quadric<q>(shape, instance, ray, filter, s);
   const BvhView &bvh = scene.meshes[shape.mesh];
   if (!bvh.nodes)
     return;
@@ -150,7 +151,7 @@ template <Question q> LANCER_LANE void visit_unbounded(const BvhScene &scene, co
   while (s.unbounded > 0 && !(q.any && s.best.instance != kNone)) {
     const uint32_t instance = scene.unbounded[--s.unbounded];
     if (scene.shapes[instance].mesh == kNone) {
-      try_quadric<q>(scene.shapes[instance], instance, ray, filter, s);
+      visit_quadric<q>(scene.shapes[instance], instance, ray, filter, s);
       continue;
     }
     push(s, -__builtin_inff(), kBvhUnbounded << kBvhKindShift);

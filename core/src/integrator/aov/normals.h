@@ -34,7 +34,7 @@ public:
         queues_.add(i, hits_[i]);
       else
         miss(rays_[i], results[slots_[i]]);
-    vertices_.wide += queues_.size();
+    vertices_ += queues_.size();
     queues_.each([&](std::span<const ShadingQueues::Met> met) {
       for (const ShadingQueues::Met &one : met) {
         number_[surfaces_.add(rays_[one.number], hits_[one.number], *one.material)] = one.number;

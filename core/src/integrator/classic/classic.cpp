@@ -59,7 +59,7 @@ void ClassicIntegrator::run(std::span<const SampleAddress> addresses, std::span<
 bool ClassicIntegrator::run_part(std::span<const SampleAddress> addresses, std::span<SampleResult> results,
                                  std::vector<PathVertex> *trace) {
   const RayCounts before = counts_;
-  const VertexCounts vertices_before = vertices_;
+  const uint64_t vertices_before = vertices_;
   generate(addresses, results);
   // Trace the recursion depth by depth, so that a pixel's sum has the same order in any batch.
   while (!rays_.empty() && !settings_.cancelled()) {

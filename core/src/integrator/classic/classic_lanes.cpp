@@ -26,7 +26,7 @@ void ClassicIntegrator::shade(std::span<SampleResult> results) {
   for (size_t i = 0; i < rays_.size(); ++i)
     if (hits_[i].valid())
       queues_.add(i, hits_[i]);
-  vertices_.wide += queues_.size();
+  vertices_ += queues_.size();
   queues_.each([&](std::span<const ShadingQueues::Met> met) {
     for (const ShadingQueues::Met &one : met)
       put_in_lane(one.number, *one.material, results);

@@ -71,7 +71,7 @@ void PathIntegrator::shade() {
       missed_.push_back(i);
   add_sky();
   // Shade the hits in blocks, one class of materials after the other.
-  vertices_.wide += queues_.size();
+  vertices_ += queues_.size();
   queues_.each([&](std::span<const ShadingQueues::Met> met) {
     for (size_t i = 0; i < met.size(); ++i) {
       if (i + 1 < met.size())

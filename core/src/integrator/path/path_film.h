@@ -67,8 +67,7 @@ public:
 
   // Whether a path stays in the camera's view by its lane's next ray: the view continues through clear glass.
   bool stays_in_view(const ScatterBlock &next, uint32_t lane) const {
-    return settings_.transparent_glass && (next.transmitted >> lane & 1) && !(next.diffuse >> lane & 1) &&
-           next.alpha2[lane] <= settings_.glass_alpha2;
+    return (next.transmitted >> lane & 1) && !(next.diffuse >> lane & 1) && settings_.clear_glass(next.alpha2[lane]);
   }
   // Sets the shares of a path's next one. Those of the first scattering are kept; share: ScatterBlock::share.
   void set_shares(const Path &path, const Path &next, const Floats (&share)[2][3], uint32_t lane);

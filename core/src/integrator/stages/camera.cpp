@@ -5,8 +5,8 @@ namespace lancer {
 const CameraKernel &camera_kernel() { return LANCER_CHOSEN_SHADING_KERNEL(camera_kernel); }
 
 CameraStage::CameraStage(const Camera &camera, const IntegratorSettings &settings)
-    : camera_(camera), filter_(settings.filter, settings.filter_width), seed_(settings.seed),
-      middle_(settings.kind != IntegratorKind::Path && settings.samples == 1),
+    : camera_(camera), filter_(settings.filter(), settings.filter_width), seed_(settings.seed),
+      middle_(settings.kind() != IntegratorKind::Path && settings.samples == 1),
       plain_(!middle_ && !camera.is_panorama() && (!(camera.lens_radius > 0.0) || camera.aperture_blades < 3)),
       kernel_(camera_kernel()) {
   film_.key = hash(settings.seed);

@@ -10,8 +10,8 @@ const OcclusionKernel &occlusion_kernel() { return LANCER_CHOSEN_SHADING_KERNEL(
 
 OcclusionStage::OcclusionStage(const Scene &scene, const IntegratorSettings &settings)
     : kernel_(occlusion_kernel()), scene_(scene),
-      reach_(settings.occlusion_distance > 0.0 ? settings.occlusion_distance * scene.normalisation.scale
-                                               : std::numeric_limits<double>::infinity()),
+      reach_(settings.occlusion_distance > 0.0f ? double(settings.occlusion_distance) * scene.normalisation.scale
+                                                : std::numeric_limits<double>::infinity()),
       next_rays_look_(!(scene.features & (kFeatureTransparency | kFeatureVisibility))) {}
 
 OcclusionStage::Open OcclusionStage::send(uint32_t lane, const SurfaceStage &surfaces, const ScatterBlock &next, uint32_t slot,

@@ -22,7 +22,7 @@ class ShadowStage final : HitFilter {
 public:
   ShadowStage(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
       : HitFilter(scene.transparent_instances.data()), scene_(scene), shader_(scene, &camera),
-        deepest_(settings.transparent_shadows), any_clear_(settings.all_features || (scene.features & kFeatureTransparency)),
+        deepest_(settings.transparent_shadows), any_clear_(settings.all_features() || (scene.features & kFeatureTransparency)),
         asks_light_path_(std::ranges::any_of(
             scene.materials, [](const Material &m) { return m.transmittance.varies() && m.program.asks_light_path; })),
         crossings_(scene.geometry) {}

@@ -1,0 +1,32 @@
+// The members of lancer_settings: X(kind, member, default, largest value).
+// Generated from core/include/lancer.h by `make bindings`; changes here are lost.
+#pragma once
+
+#define LANCER_SETTINGS(X)                                                                                                     \
+  X(Choice, integrator, 0u, 2u)                                                                                                \
+  X(Number, samples, 256u, 0xffffffffu)                                                                                        \
+  X(Number, seed, 0u, 0xffffffffu)                                                                                             \
+  X(Number, max_bounces, 10u, 1024u)                                                                                           \
+  X(Amount, contribution_threshold, 0.0f, 0xffffffffu)                                                                         \
+  X(Amount, clamp_indirect, 0.0f, 0xffffffffu)                                                                                 \
+  X(Number, split_lights, 1u, 16u)                                                                                             \
+  X(Number, split_paths, 1u, 16u)                                                                                              \
+  X(Choice, pixel_filter, 0u, 1u)                                                                                              \
+  X(Width, filter_width, 1.0f, 0xffffffffu)                                                                                    \
+  X(Switch, film_transparent, false, 0xffffffffu)                                                                              \
+  X(Switch, transparent_glass, false, 0xffffffffu)                                                                             \
+  X(Amount, glass_roughness, 0.0f, 0xffffffffu)                                                                                \
+  X(Number, transparent_bounces, 8u, 1024u)                                                                                    \
+  X(Number, transparent_shadows, 8u, 1024u)                                                                                    \
+  X(Amount, alpha_threshold, 0.5f, 0xffffffffu)                                                                                \
+  X(Switch, environment_reflections, false, 0xffffffffu)                                                                       \
+  X(Amount, occlusion_distance, 0.0f, 0xffffffffu)                                                                             \
+  X(Amount, mist_start, 5.0f, 0xffffffffu)                                                                                     \
+  X(Amount, mist_depth, 25.0f, 0xffffffffu)                                                                                    \
+  X(Amount, mist_falloff, 2.0f, 0xffffffffu)                                                                                   \
+  X(Switch, blended_features, false, 0xffffffffu)                                                                              \
+  X(Choice, features, 0u, 1u)                                                                                                  \
+  X(Bits, passes, 1u, 16777215u)                                                                                               \
+  X(Number, threads, 0u, 1024u)                                                                                                \
+  X(Number, tile_size, 0u, 0xffffffffu)                                                                                        \
+  X(Switch, refines, false, 0xffffffffu)
