@@ -1,6 +1,6 @@
 """Generates the interface's numbers and structs in Python, and the core's table of parameters, from the C header.
 
-    bindings.py         writes addon/bindings/enums.py and structs.py, core/src/scene/principled_table.h and
+    bindings.py         writes addon/bindings/enums.py and structs.py, core/src/scene/principled_table.h and enums.h, and
                         core/src/integrator/settings_table.h, from core/include/lancer.h and lancer_probes.h
     bindings.py FOLDER  writes all files into another folder
 
@@ -44,6 +44,29 @@ VALUE = re.compile(r"(LANCER_\w+)(?: = (\d+))?,?(?:\s*\[(\d)\])?")
 PARAMETER = re.compile(r"lancer_parameter (?P<name>\w+); +/\* \[(?P<kind>\w+) (?P<default>[\d.]+)\]")
 SETTING = re.compile(r"(?:uint32_t|float) (?P<name>\w+); +/\* \[(?P<kind>\w+) (?P<default>[\d.]+)(?: (?P<most>\d+))?\]")
 CONSTANT = re.compile(r"#define LANCER_(\w+) (\d+)u")
+# The enums that the core names as the interface does, and their names there.
+CORE_ENUMS = {
+    "ray": "RayKind",
+    "node_kind": "NodeKind",
+    "attribute_flag": "AttributeFlag",
+    "color_model": "ColorModel",
+    "object_fact": "ObjectFact",
+    "path_fact": "PathFact",
+    "noise_kind": "NoiseKind",
+    "noise_flag": "NoiseFlag",
+    "voronoi_feature": "VoronoiFeatureKind",
+    "voronoi_metric": "VoronoiMetric",
+    "voronoi_flag": "VoronoiFlag",
+    "gradient_kind": "GradientKind",
+    "coordinate": "Coordinate",
+    "projection": "ImageProjection",
+    "environment": "EnvironmentProjection",
+    "mapping_type": "MappingType",
+    "math_operation": "MathOperation",
+    "vector_operation": "VectorOperation",
+    "mix_mode": "MixMode",
+    "material_flag": "MaterialFlag",
+}
 VECTORS = ("color", "direction", "vector")
 MEMBER = re.compile(r"(?P<const>const )?(?P<type>\w+) (?P<names>[^;]+);")
 
@@ -172,15 +195,57 @@ def settings(header):
     return found
 
 
+def core_members(header, name):
+    """Returns the wrapped lines of an enum's members for the core."""
+    body = next(match["body"] for match in ENUM.finditer(header) if match["name"] == name)
+    members = values(body)
+    names = shortened([long for long, _, _ in members])
+    listed = ", ".join(f"{class_name(short.lower())} = {value}" for short, (_, value, _) in zip(names, members, strict=True))
+    return "\n".join(textwrap.wrap(listed, WIDTH, initial_indent="  ", subsequent_indent="  "))
+
+
+def core_enums_text(header):
+    """Returns the numbers of nodes, rays and materials for the core."""
+    structs = "\n".join(
+        f"struct {name} {{ enum : uint32_t {{\n{core_members(header, of)}\n}}; }};" for of, name in CORE_ENUMS.items()
+    )
+    return f"""// The numbers of the interface that records of a scene hold.
+// Generated from core/include/lancer.h by `make bindings`; changes here are lost.
+#pragma once
+
+#include <cstdint>
+
+namespace lancer {{
+
+// clang-format off
+{structs}
+// clang-format on
+
+}} // namespace lancer
+"""
+
+
 def settings_text(header):
     """Returns the settings for the core: kind, member, default, largest value."""
     rows = ["#define LANCER_SETTINGS(X)"]
     for name, kind, default, most in settings(header):
         given = f"{float(default)}f" if kind in ("amount", "width") else {"switch": "false"}.get(kind, f"{default}u")
         rows.append(f"  X({kind.capitalize()}, {name}, {given}, {most or '0xffffffff'}u)")
-    return f"""// The members of lancer_settings: X(kind, member, default, largest value).
+    return f"""// The passes, and the members of lancer_settings: X(kind, member, default, largest value).
 // Generated from core/include/lancer.h by `make bindings`; changes here are lost.
 #pragma once
+
+#include <cstdint>
+
+namespace lancer {{
+
+// clang-format off
+enum class Pass : uint32_t {{
+{core_members(header, "pass")}
+}};
+// clang-format on
+
+}} // namespace lancer
 
 {c_macro(rows)}
 """
@@ -238,6 +303,7 @@ def main(folder=None):
         (FOLDER, "enums.py", enums_text),
         (FOLDER, "structs.py", structs_text),
         (CORE / "scene", "principled_table.h", table_text),
+        (CORE / "scene", "enums.h", core_enums_text),
         (CORE / "integrator", "settings_table.h", settings_text),
     ):
         (Path(folder or place) / name).write_text(made(text), encoding="utf-8")

@@ -48,6 +48,14 @@ def test_includes_go_up(room):
     assert not wrong, "\n".join(wrong)
 
 
+def test_rooms_below_render_do_not_know_the_interface():
+    """The readers of the user's records alone include the C header; the rooms after them have types of their own."""
+    for file in FILES:
+        if room_of(file) in ROOMS[:-1] and not (room_of(file) == "scene" and file.name.startswith("fill")):
+            text = (CORE / file).read_text(encoding="utf-8")
+            assert '"lancer.h"' not in text and '"lancer_probes.h"' not in text, file
+
+
 def test_integrators_do_not_know_each_other():
     rank = {folder: number for number, folders in enumerate(INTEGRATOR) for folder in folders}
 

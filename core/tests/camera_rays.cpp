@@ -1,5 +1,6 @@
 // Camera rays from kernels in lanes equal those of the general code: Sampler, PixelFilter, Camera.
 #include "integrator/stages/camera.h"
+#include "lancer.h"
 
 #include "camera_lab.h"
 

@@ -1,5 +1,6 @@
 // Environment sampling: the density integrates to one, samples follow it, and no pole, seam or bright texel is lost.
 #include "compile/scene.h"
+#include "lancer.h"
 #include "lights/environment.h"
 
 #include <cstring>

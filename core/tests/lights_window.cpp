@@ -1,5 +1,6 @@
 // A world that reads window coordinates of a direction: by the active camera, for its own rays and for all others.
 #include "compile/scene.h"
+#include "lancer.h"
 #include "lights/environment.h"
 #include "scene/camera.h"
 

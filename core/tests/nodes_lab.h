@@ -6,6 +6,7 @@
 #include "nodes/run.h"
 #include "scene/camera.h"
 #include "scene/error.h"
+#include "scene/fill.h"
 
 #include <gtest/gtest.h>
 

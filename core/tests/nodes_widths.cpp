@@ -1,4 +1,5 @@
 // Textures and curves in the lanes of each instruction set: the bits of one place, whatever the numbers are.
+#include "lancer.h"
 #include "sampling/elementary.h"
 #include "scene/node.h"
 #include "widths/each_kernel.h"

@@ -50,7 +50,7 @@ LANCER_LANE void find_lobes(const Material *const *materials, const Values &valu
   // A bump of the whole surface replaces its normal; nodes return it on the viewer's side.
   if (material.normal.varies())
     ns = unit_or(Vec3<F>(values(material.normal)), ns);
-  bsdf.begin(wo, ns, ng, inside, !(material.flags & LANCER_MATERIAL_NO_BUMP_CORRECTION));
+  bsdf.begin(wo, ns, ng, inside, !(material.flags & MaterialFlag::NoBumpCorrection));
   for (size_t i = 0; i < material.lobes.size(); ++i)
     add_described<F>(materials, i, values, hole, bsdf);
   bsdf.complete();

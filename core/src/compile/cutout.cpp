@@ -16,18 +16,18 @@ const Node *source(const Program &program, const Parameter &parameter, uint32_t 
 }
 
 const Node *math_source(const Program &program, const Parameter &parameter, uint32_t operation, uint32_t flags) {
-  const Node *node = source(program, parameter, LANCER_NODE_MATH);
+  const Node *node = source(program, parameter, NodeKind::Math);
   return node && node->option == operation && node->flags == flags ? node : nullptr;
 }
 
 } // namespace
 
 FlatImage flat_image(const Program &program, const Parameter &color, const std::vector<Image> &images) {
-  const Node *picture = source(program, color, LANCER_NODE_IMAGE);
-  if (!picture || picture->option != LANCER_PROJECT_FLAT || picture->image_count != 1 || images[picture->image].tile != 0)
+  const Node *picture = source(program, color, NodeKind::Image);
+  if (!picture || picture->option != ImageProjection::Flat || picture->image_count != 1 || images[picture->image].tile != 0)
     return {};
-  const Node *place = source(program, picture->inputs[0], LANCER_NODE_COORDINATE);
-  if (!place || place->option != LANCER_COORDINATE_UV)
+  const Node *place = source(program, picture->inputs[0], NodeKind::Coordinate);
+  if (!place || place->option != Coordinate::Uv)
     return {};
   return {picture->image, place->name, static_cast<Extension>(picture->flags & 0xf),
           static_cast<Interpolation>(picture->flags >> 4 & 0xf)};
@@ -35,17 +35,17 @@ FlatImage flat_image(const Program &program, const Parameter &color, const std::
 
 std::optional<ImageAlpha> image_alpha(const Program &program, const Parameter &value) {
   // A node that adds 0 serves only to clamp its result.
-  const Node *clamp = math_source(program, value, LANCER_MATH_ADD, 1);
+  const Node *clamp = math_source(program, value, MathOperation::Add, 1);
   if (clamp && (clamp->inputs[1].varies() || clamp->inputs[1].value.x != 0.0f))
     return {};
-  const Node *alpha = source(program, clamp ? clamp->inputs[0] : value, LANCER_NODE_ALPHA);
+  const Node *alpha = source(program, clamp ? clamp->inputs[0] : value, NodeKind::Alpha);
   if (!alpha)
     return {};
   return ImageAlpha{alpha->inputs[0], clamp != nullptr};
 }
 
 std::optional<Remainder> remainder_of(const Program &program, const Parameter &value) {
-  const Node *difference = math_source(program, value, LANCER_MATH_SUBTRACT, 0);
+  const Node *difference = math_source(program, value, MathOperation::Subtract, 0);
   if (!difference || difference->inputs[0].varies())
     return {};
   return Remainder{difference->inputs[0].value.x, difference->inputs[1]};
@@ -68,15 +68,15 @@ AlphaImage find_alpha(const Material &material, const std::vector<Image> &images
 // Whether a node reads only its inputs, the triangle and the place within it.
 bool is_painted(const Node &node) {
   switch (node.kind) {
-  case LANCER_NODE_COORDINATE:
-    return node.option == LANCER_COORDINATE_UV || node.option == LANCER_COORDINATE_PARAMETRIC;
-  case LANCER_NODE_IMAGE:
-    return node.option != LANCER_PROJECT_BOX;
-  case LANCER_NODE_ATTRIBUTE:
-  case LANCER_NODE_NOISE:
-  case LANCER_NODE_VORONOI:
-  case LANCER_NODE_GRADIENT:
-  case LANCER_NODE_CURVES:
+  case NodeKind::Coordinate:
+    return node.option == Coordinate::Uv || node.option == Coordinate::Parametric;
+  case NodeKind::Image:
+    return node.option != ImageProjection::Box;
+  case NodeKind::Attribute:
+  case NodeKind::Noise:
+  case NodeKind::Voronoi:
+  case NodeKind::Gradient:
+  case NodeKind::Curves:
     return true;
   default:
     return asks_no_place(node.kind);

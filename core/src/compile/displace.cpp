@@ -50,7 +50,7 @@ private:
       const uint32_t material = material_of(description_.geometry, description_.slots, number_, i);
       if (material == kNone || !description_.materials[material].displaces())
         continue;
-      const bool keeps = description_.materials[material].flags & LANCER_MATERIAL_KEEP_NORMALS;
+      const bool keeps = description_.materials[material].flags & MaterialFlag::KeepNormals;
       renews_[i] = !keeps;
       keeps_ |= keeps;
       std::vector<bool> &seen = done[material];

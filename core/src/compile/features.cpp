@@ -1,8 +1,8 @@
 #include "compile/features.h"
+#include "scene/enums.h"
 
 #include "bsdf/lobe.h"
 #include "bsdf/ready_lobe.h"
-#include "lancer.h"
 #include "scene/description.h"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ bool lets_light_through(const Material &material) {
 namespace {
 
 std::string code_of(const Material &material, size_t number) {
-  std::string code = material.flags & LANCER_MATERIAL_NO_BUMP_CORRECTION ? "u" : "c";
+  std::string code = material.flags & MaterialFlag::NoBumpCorrection ? "u" : "c";
   if (!material.fixed())
     return code + std::to_string(number);
   for (size_t i = 0; i < material.lobes.size(); ++i)
@@ -96,7 +96,7 @@ uint32_t shape_feature(ShapeKind kind) {
 
 bool uses_images(const Program &program) {
   for (const Node &node : program.nodes)
-    if (node.kind == LANCER_NODE_IMAGE || node.kind == LANCER_NODE_ENVIRONMENT)
+    if (node.kind == NodeKind::Image || node.kind == NodeKind::Environment)
       return true;
   return false;
 }

@@ -17,7 +17,7 @@ struct SampleAddress {
   uint32_t x, y, sample;
 };
 
-// Parts of the light, in the order of the passes from LANCER_PASS_EMISSION on.
+// Parts of the light, in the order of the passes from Pass::Emission on.
 enum LightPass : uint32_t {
   kLightEmission = 0,
   kLightEnvironment = 1,

@@ -22,6 +22,8 @@ struct Splits {
   bool operator==(const Splits &) const = default;
 };
 
+constexpr uint32_t bit(Pass pass) { return 1u << static_cast<uint32_t>(pass); }
+
 // Kinds of settings, see lancer_settings.
 enum class SettingKind { Choice, Number, Amount, Width, Switch, Bits };
 template <SettingKind kind>

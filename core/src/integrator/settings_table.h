@@ -1,6 +1,21 @@
-// The members of lancer_settings: X(kind, member, default, largest value).
+// The passes, and the members of lancer_settings: X(kind, member, default, largest value).
 // Generated from core/include/lancer.h by `make bindings`; changes here are lost.
 #pragma once
+
+#include <cstdint>
+
+namespace lancer {
+
+// clang-format off
+enum class Pass : uint32_t {
+  Combined = 0, Depth = 1, Normal = 2, Albedo = 3, Position = 4, ObjectIndex = 5, MaterialIndex = 6, Uv = 7, Mist = 8, Emission
+  = 9, Environment = 10, AmbientOcclusion = 11, DiffuseDirect = 12, DiffuseIndirect = 13, DiffuseColor = 14, GlossyDirect = 15,
+  GlossyIndirect = 16, GlossyColor = 17, TransmissionDirect = 18, TransmissionIndirect = 19, TransmissionColor = 20,
+  DenoisingNormal = 21, DenoisingDepth = 22, Error = 23
+};
+// clang-format on
+
+} // namespace lancer
 
 #define LANCER_SETTINGS(X)                                                                                                     \
   X(Choice, integrator, 0u, 2u)                                                                                                \

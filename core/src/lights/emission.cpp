@@ -8,7 +8,7 @@
 
 namespace lancer {
 
-bool is_light(const Material &material) { return material.emits() && !(material.flags & LANCER_MATERIAL_NOT_A_LIGHT); }
+bool is_light(const Material &material) { return material.emits() && !(material.flags & MaterialFlag::NotALight); }
 
 bool emission_varies(const Material &material) { return material.emission.varies() || material.layered_emission; }
 

@@ -32,9 +32,9 @@ uint32_t image_width(const World &world, const std::vector<Image> &images) {
   uint32_t width = 0;
   for (const uint16_t number : world.schedule) {
     const Node &node = world.program.nodes[number];
-    if (node.kind != LANCER_NODE_IMAGE && node.kind != LANCER_NODE_ENVIRONMENT)
+    if (node.kind != NodeKind::Image && node.kind != NodeKind::Environment)
       continue;
-    const bool cube = node.kind == LANCER_NODE_ENVIRONMENT && node.option == LANCER_ENVIRONMENT_CUBE;
+    const bool cube = node.kind == NodeKind::Environment && node.option == EnvironmentProjection::Cube;
     for (uint32_t i = 0; i < node.image_count; ++i) {
       const Image &image = images[node.image + i];
       width = std::max(width, cube ? 4 * image.width : std::max(image.width, 2 * image.height));
@@ -48,13 +48,13 @@ uint32_t image_width(const World &world, const std::vector<Image> &images) {
 bool has_directions(const World &world) {
   return std::ranges::any_of(world.schedule, [&](uint16_t number) {
     switch (world.program.nodes[number].kind) {
-    case LANCER_NODE_COORDINATE:
-    case LANCER_NODE_ATTRIBUTE:
-    case LANCER_NODE_FRESNEL:
-    case LANCER_NODE_LAYER_WEIGHT:
-    case LANCER_NODE_NORMAL_MAP:
-    case LANCER_NODE_TANGENT:
-    case LANCER_NODE_BUMP:
+    case NodeKind::Coordinate:
+    case NodeKind::Attribute:
+    case NodeKind::Fresnel:
+    case NodeKind::LayerWeight:
+    case NodeKind::NormalMap:
+    case NodeKind::Tangent:
+    case NodeKind::Bump:
       return true;
     default:
       return false;

@@ -38,7 +38,7 @@ struct Light {
   bool ellipse = false;
   double tan_half_spread = 0.0, spread_scale = 0.0; // AREA; scale 0 = no limit
   double plane_tolerance = 0.0; // AREA: a face at most this far before the lamp's plane is meant to lie in the plane
-  uint32_t hidden_from = 0;     // LANCER_RAY_* bits
+  uint32_t hidden_from = 0;     // RayKind bits
   bool no_shadow = false;
   ClassicLight classic;
 };

@@ -27,11 +27,11 @@ public:
   }
   // Whether a light that is hidden from these rays still lights some surface.
   static bool lit_by(uint32_t hidden_from) {
-    return (~hidden_from & (LANCER_RAY_DIFFUSE | LANCER_RAY_GLOSSY | LANCER_RAY_TRANSMISSION)) != 0;
+    return (~hidden_from & (RayKind::Diffuse | RayKind::Glossy | RayKind::Transmission)) != 0;
   }
   // The environment's number among the lights; valid only where the environment varies.
   uint32_t environment_light() const { return uint32_t(lights_.size() + emitters_.size()); }
-  // Return the LANCER_RAY_* bits of the rays that do not see a light, and whether nothing occludes it.
+  // Return the RayKind bits of the rays that do not see a light, and whether nothing occludes it.
   uint32_t hidden_from(uint32_t light) const { return switches_[light] & ~kNoShadow; }
   bool no_shadow(uint32_t light) const { return switches_[light] & kNoShadow; }
 

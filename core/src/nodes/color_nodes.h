@@ -60,14 +60,14 @@ template <class F> Vector3<F> mix_hsv(uint32_t mode, const F &t, const Vector3<F
   Vector3<F> hsv = to_hsv(a);
   const Vector3<F> other = to_hsv(b);
   switch (mode) {
-  case LANCER_MIX_HUE:
-  case LANCER_MIX_COLOR:
+  case MixMode::Hue:
+  case MixMode::Color:
     hsv.x = other.x;
-    if (mode == LANCER_MIX_COLOR)
+    if (mode == MixMode::Color)
       hsv.y = other.y;
     // A grey has no hue.
     return select(other.y == zero, a, blend(a, from_hsv(hsv), t));
-  case LANCER_MIX_SATURATION: {
+  case MixMode::Saturation: {
     const auto grey = hsv.y == zero;
     hsv.y = rest * hsv.y + t * other.y;
     return select(grey, a, from_hsv(hsv));
@@ -83,43 +83,43 @@ template <class F> Vector3<F> mix_mode(uint32_t mode, const Vector3<F> &factor, 
   const F t = factor.x, zero(0.0f), one(1.0f), two(2.0f), rest = one - t;
   const V3 white(one);
   switch (mode) {
-  case LANCER_MIX_MIX:
+  case MixMode::Mix:
     return blend(a, b, factor);
-  case LANCER_MIX_DARKEN:
+  case MixMode::Darken:
     return blend(a, min(a, b), t);
-  case LANCER_MIX_LIGHTEN:
+  case MixMode::Lighten:
     return blend(a, max(a, b), t);
-  case LANCER_MIX_MULTIPLY:
+  case MixMode::Multiply:
     return blend(a, a * b, t);
-  case LANCER_MIX_ADD:
+  case MixMode::Add:
     return a + t * b;
-  case LANCER_MIX_SUBTRACT:
+  case MixMode::Subtract:
     return a - t * b;
-  case LANCER_MIX_SCREEN:
+  case MixMode::Screen:
     return white - (V3(rest) + t * (white - b)) * (white - a);
-  case LANCER_MIX_OVERLAY:
+  case MixMode::Overlay:
     return componentwise(a, b, [&](const F &x, const F &y) {
       return select(x < F(0.5f), x * (rest + two * t * y), one - (rest + two * t * (one - y)) * (one - x));
     });
-  case LANCER_MIX_DIVIDE:
+  case MixMode::Divide:
     return componentwise(a, b, [&](const F &x, const F &y) { return select(y != zero, rest * x + t * x / y, x); });
-  case LANCER_MIX_DIFFERENCE:
+  case MixMode::Difference:
     return blend(a, abs(a - b), t);
-  case LANCER_MIX_EXCLUSION:
+  case MixMode::Exclusion:
     return max(blend(a, a + b - two * a * b, t), V3(zero));
-  case LANCER_MIX_DODGE:
+  case MixMode::Dodge:
     return componentwise(a, b, [&](const F &x, const F &y) {
       const F light = one - t * y;
       return select(x == zero, x, select(light <= zero, one, min(x / light, one)));
     });
-  case LANCER_MIX_BURN:
+  case MixMode::Burn:
     return componentwise(a, b, [&](const F &x, const F &y) {
       const F light = rest + t * y;
       return select(light <= zero, zero, clamp01(F(one - (one - x) / light)));
     });
-  case LANCER_MIX_SOFT_LIGHT:
+  case MixMode::SoftLight:
     return rest * a + t * ((white - a) * b * a + a * (white - (white - b) * (white - a)));
-  case LANCER_MIX_LINEAR_LIGHT:
+  case MixMode::LinearLight:
     return a + t * (two * b - white);
   default:
     return mix_hsv(mode, t, a, b);
@@ -147,11 +147,11 @@ template <class F> Value<F> invert_node(const Inputs<F> &in) {
 template <class F> Value<F> color_model_node(const Inputs<F> &in) {
   const Vector3<F> c = in[0];
   switch (in.node.option) {
-  case LANCER_COLOR_TO_HSV:
+  case ColorModel::ToHsv:
     return solid(to_hsv(c));
-  case LANCER_COLOR_FROM_HSV:
+  case ColorModel::FromHsv:
     return solid(from_hsv(c));
-  case LANCER_COLOR_TO_HSL:
+  case ColorModel::ToHsl:
     return solid(to_hsl(c));
   default:
     return solid(from_hsl(c));

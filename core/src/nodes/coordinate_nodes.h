@@ -136,31 +136,31 @@ template <class F> Value<F> coordinate_node(const Node &node, const Site<F> &sit
   using D = DoubleOf<F>;
   const F zero(0.0f);
   switch (node.option) {
-  case LANCER_COORDINATE_GENERATED:
+  case Coordinate::Generated:
     return solid(generated(site, node.name));
-  case LANCER_COORDINATE_NORMAL:
+  case Coordinate::Normal:
     return solid(object_space_normal(node.flags & 1 ? site.standing() : site));
-  case LANCER_COORDINATE_UV:
+  case Coordinate::Uv:
     return solid(uv(site, node.name));
-  case LANCER_COORDINATE_OBJECT:
+  case Coordinate::Object:
     return solid(narrow(node.flags & 1 ? rows_times(node.matrix, user_position(site), 1.0) : object_position(site)));
-  case LANCER_COORDINATE_CAMERA:
+  case Coordinate::Camera:
     return solid(in_camera(site));
-  case LANCER_COORDINATE_WINDOW:
+  case Coordinate::Window:
     return solid(window(site));
-  case LANCER_COORDINATE_REFLECTION:
+  case Coordinate::Reflection:
     return solid(site.surface ? F(F(2.0f) * dot(site.ns, site.wo)) * site.ns - site.wo : site.wo);
-  case LANCER_COORDINATE_POSITION:
+  case Coordinate::Position:
     return solid(narrow(user_position(site)));
-  case LANCER_COORDINATE_SHADING_NORMAL:
+  case Coordinate::ShadingNormal:
     return solid(site.ns);
-  case LANCER_COORDINATE_TRUE_NORMAL:
+  case Coordinate::TrueNormal:
     return solid(site.ng);
-  case LANCER_COORDINATE_INCOMING:
+  case Coordinate::Incoming:
     return solid(site.wo);
-  case LANCER_COORDINATE_BACKFACING:
+  case Coordinate::Backfacing:
     return scalar(select(site.backfacing, F(1.0f), zero));
-  case LANCER_COORDINATE_PARAMETRIC:
+  case Coordinate::Parametric:
     return solid(Vector3<F>(site.surface ? narrow(D(1.0) - site.bary[0] - site.bary[1]) : zero, narrow(site.bary[0]), zero));
   default:
     return solid(Vector3<F>(zero));
@@ -169,14 +169,14 @@ template <class F> Value<F> coordinate_node(const Node &node, const Site<F> &sit
 
 template <class F> Value<F> attribute_node(const Node &node, const Site<F> &site) {
   Value<F> r = nothing<F>();
-  if (node.flags & LANCER_ATTRIBUTE_OPAQUE)
+  if (node.flags & AttributeFlag::Opaque)
     r.alpha = F(1.0f);
   if (!any(site.on_mesh))
     return r;
   const AttributeLanes<F> attribute = find_attributes(site, node.name);
   if (any(attribute.found)) {
     Value<F> given = attribute_at(site, attribute);
-    if (node.flags & LANCER_ATTRIBUTE_FIRST) {
+    if (node.flags & AttributeFlag::First) {
       const auto two = by_lane<MaskOf<F>>([&](int i) { return attribute.of[i] && attribute.of[i]->channels == 2; });
       given.v = select(two, Vector3<F>(given.v.x), given.v);
     }

@@ -1,7 +1,6 @@
 // Curves and colour ramps as tables of values at equal distances, linearly interpolated.
 #pragma once
 
-#include "lancer.h"
 #include "simd/memory.h"
 #include "simd/vectors.h"
 

@@ -13,63 +13,63 @@ namespace {
 template <class F> Value<F> node_value(const Program &program, const Inputs<F> &in, const Site<F> &site) {
   const Node &node = in.node;
   switch (node.kind) {
-  case LANCER_NODE_COORDINATE:
+  case NodeKind::Coordinate:
     return coordinate_node(node, site);
-  case LANCER_NODE_ATTRIBUTE:
-    return attribute_node(node, node.flags & LANCER_ATTRIBUTE_STILL ? site.standing() : site);
-  case LANCER_NODE_IMAGE:
+  case NodeKind::Attribute:
+    return attribute_node(node, node.flags & AttributeFlag::Still ? site.standing() : site);
+  case NodeKind::Image:
     return image_node(in, site);
-  case LANCER_NODE_ENVIRONMENT:
+  case NodeKind::Environment:
     return environment_node(in, site);
-  case LANCER_NODE_ALPHA:
+  case NodeKind::Alpha:
     return scalar(in.alpha(0));
-  case LANCER_NODE_MAPPING:
+  case NodeKind::Mapping:
     return mapping_node(in);
-  case LANCER_NODE_TRANSFORM:
+  case NodeKind::Transform:
     return transform_node(in);
-  case LANCER_NODE_MATH:
+  case NodeKind::Math:
     return math_node(in);
-  case LANCER_NODE_VECTOR_MATH:
+  case NodeKind::VectorMath:
     return vector_math_node(in);
-  case LANCER_NODE_MIX:
+  case NodeKind::Mix:
     return mix_node(in);
-  case LANCER_NODE_SEPARATE:
+  case NodeKind::Separate:
     return separate_node(in);
-  case LANCER_NODE_COMBINE:
+  case NodeKind::Combine:
     return combine_node(in);
-  case LANCER_NODE_GREY:
+  case NodeKind::Grey:
     return grey_node(in);
-  case LANCER_NODE_FRESNEL:
+  case NodeKind::Fresnel:
     return fresnel_node(in, site);
-  case LANCER_NODE_LAYER_WEIGHT:
+  case NodeKind::LayerWeight:
     return layer_weight_node(in, site);
-  case LANCER_NODE_NORMAL_MAP:
+  case NodeKind::NormalMap:
     return normal_map_node(in, site.standing());
-  case LANCER_NODE_BUMP:
+  case NodeKind::Bump:
     return bump_node(program, in, site);
-  case LANCER_NODE_TANGENT:
+  case NodeKind::Tangent:
     return tangent_node(in, site.standing());
-  case LANCER_NODE_CLAMP:
+  case NodeKind::Clamp:
     return clamp_node(in);
-  case LANCER_NODE_DISPLACEMENT:
+  case NodeKind::Displacement:
     return displacement_node(in, site);
-  case LANCER_NODE_GAMMA:
+  case NodeKind::Gamma:
     return gamma_node(in);
-  case LANCER_NODE_INVERT:
+  case NodeKind::Invert:
     return invert_node(in);
-  case LANCER_NODE_COLOR_MODEL:
+  case NodeKind::ColorModel:
     return color_model_node(in);
-  case LANCER_NODE_NOISE:
+  case NodeKind::Noise:
     return noise_node(in);
-  case LANCER_NODE_VORONOI:
+  case NodeKind::Voronoi:
     return voronoi_node(in);
-  case LANCER_NODE_GRADIENT:
+  case NodeKind::Gradient:
     return gradient_node(in);
-  case LANCER_NODE_CURVES:
+  case NodeKind::Curves:
     return curves_node(in, site);
-  case LANCER_NODE_OBJECT_INFO:
+  case NodeKind::ObjectInfo:
     return object_info_node(node, site);
-  case LANCER_NODE_LIGHT_PATH:
+  case NodeKind::LightPath:
     return light_path_node(node, site);
   default:
     return nothing<F>();

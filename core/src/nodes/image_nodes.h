@@ -144,24 +144,24 @@ template <class F> Value<F> image_node(const Inputs<F> &in, const Site<F> &site)
     return missing<F>();
   const Image &first = picture(in, site, 0);
   const Vector3<F> p = in[0], around = F(2.0f) * p - Vector3<F>(F(1.0f));
-  if (in.node.option == LANCER_PROJECT_BOX)
+  if (in.node.option == ImageProjection::Box)
     return box(in, site, first);
-  const Place<F> place = in.node.option == LANCER_PROJECT_SPHERE ? on_sphere(around)
-                         : in.node.option == LANCER_PROJECT_TUBE ? on_tube(around)
-                                                                 : Place<F>{p.x, p.y};
+  const Place<F> place = in.node.option == ImageProjection::Sphere ? on_sphere(around)
+                         : in.node.option == ImageProjection::Tube ? on_tube(around)
+                                                                   : Place<F>{p.x, p.y};
   return first.tile != 0 ? look_up_tile(in, site, place) : look_up(in, first, place);
 }
 
 template <class F> Value<F> environment_node(const Inputs<F> &in, const Site<F> &site) {
   using D = DoubleOf<F>;
   const Vector3<F> given = in[0];
-  if (in.node.option == LANCER_ENVIRONMENT_CUBE)
+  if (in.node.option == EnvironmentProjection::Cube)
     return cube(in, site, unit_or_zero(given));
   if (in.node.image_count == 0)
     return missing<F>();
   const F zero(0.0f), one(1.0f), half(0.5f);
   Place<F> place;
-  if (in.node.option == LANCER_ENVIRONMENT_MIRROR_BALL) {
+  if (in.node.option == EnvironmentProjection::MirrorBall) {
     // The mirror ball is seen along +y. The normal that mirrors the view to d is halfway between the viewer and d.
     const Vector3<F> d = unit_or_zero(given);
     const F size = F(2.0f) * sqrt(max(F(-0.5f) * (d.y - one), zero)), length = select(size > zero, size, one);

@@ -1,9 +1,9 @@
 // Arithmetic of Blender's Math node: undefined results are 0. Internal linkage, as in lanes.h.
 #pragma once
 
-#include "lancer.h"
 #include "nodes/site.h"
 #include "sampling/elementary.h"
+#include "scene/enums.h"
 #include "simd/rounding.h"
 
 #include <cmath>
@@ -52,88 +52,88 @@ template <class F> F math(uint32_t operation, const F &a, const F &b, const F &c
   constexpr float pi = 3.14159265358979323846f;
   const F zero(0.0f), one(1.0f);
   switch (operation) {
-  case LANCER_MATH_ADD:
+  case MathOperation::Add:
     return a + b;
-  case LANCER_MATH_SUBTRACT:
+  case MathOperation::Subtract:
     return a - b;
-  case LANCER_MATH_MULTIPLY:
+  case MathOperation::Multiply:
     return a * b;
-  case LANCER_MATH_DIVIDE:
+  case MathOperation::Divide:
     return divide(a, b);
-  case LANCER_MATH_MULTIPLY_ADD:
+  case MathOperation::MultiplyAdd:
     return a * b + c;
-  case LANCER_MATH_POWER:
+  case MathOperation::Power:
     return power(a, b);
-  case LANCER_MATH_LOGARITHM:
+  case MathOperation::Logarithm:
     return logarithm(a, b);
-  case LANCER_MATH_SQRT:
+  case MathOperation::Sqrt:
     return select(a > zero, sqrt(a), zero);
-  case LANCER_MATH_INVERSE_SQRT:
+  case MathOperation::InverseSqrt:
     return select(a > zero, one / sqrt(a), zero);
-  case LANCER_MATH_ABSOLUTE:
+  case MathOperation::Absolute:
     return abs(a);
-  case LANCER_MATH_EXPONENT:
+  case MathOperation::Exponent:
     return exp(a);
-  case LANCER_MATH_MINIMUM:
+  case MathOperation::Minimum:
     return least(a, b);
-  case LANCER_MATH_MAXIMUM:
+  case MathOperation::Maximum:
     return largest(a, b);
-  case LANCER_MATH_LESS_THAN:
+  case MathOperation::LessThan:
     return select(a < b, one, zero);
-  case LANCER_MATH_GREATER_THAN:
+  case MathOperation::GreaterThan:
     return select(a > b, one, zero);
-  case LANCER_MATH_SIGN:
+  case MathOperation::Sign:
     return select(a == zero, zero, select(a < zero, F(-1.0f), one));
-  case LANCER_MATH_COMPARE:
+  case MathOperation::Compare:
     // Blender's smallest tolerance: one unit in the last place of 1.
     return select((a == b) | (abs(a - b) <= largest(c, F(0x1p-23f))), one, zero);
-  case LANCER_MATH_SMOOTH_MIN:
+  case MathOperation::SmoothMin:
     return smooth_minimum(a, b, c);
-  case LANCER_MATH_SMOOTH_MAX:
+  case MathOperation::SmoothMax:
     return -smooth_minimum(F(-a), F(-b), c);
-  case LANCER_MATH_ROUND:
+  case MathOperation::Round:
     return floor(a + F(0.5f));
-  case LANCER_MATH_FLOOR:
+  case MathOperation::Floor:
     return floor(a);
-  case LANCER_MATH_CEIL:
+  case MathOperation::Ceil:
     return ceil(a);
-  case LANCER_MATH_TRUNC:
+  case MathOperation::Trunc:
     return trunc(a);
-  case LANCER_MATH_FRACT:
+  case MathOperation::Fract:
     return fraction(a);
-  case LANCER_MATH_MODULO:
+  case MathOperation::Modulo:
     return modulo(a, b);
-  case LANCER_MATH_FLOORED_MODULO:
+  case MathOperation::FlooredModulo:
     return select(b != zero, a - floor(a / b) * b, zero);
-  case LANCER_MATH_WRAP:
+  case MathOperation::Wrap:
     return wrap(a, b, c);
-  case LANCER_MATH_SNAP:
+  case MathOperation::Snap:
     return floor(divide(a, b)) * b;
-  case LANCER_MATH_PINGPONG:
+  case MathOperation::Pingpong:
     return pingpong(a, b);
-  case LANCER_MATH_SINE:
+  case MathOperation::Sine:
     return sin(a);
-  case LANCER_MATH_COSINE:
+  case MathOperation::Cosine:
     return cos(a);
-  case LANCER_MATH_TANGENT:
+  case MathOperation::Tangent:
     return tan(a);
-  case LANCER_MATH_ARCSINE:
+  case MathOperation::Arcsine:
     return asin(min(max(a, F(-1.0f)), one));
-  case LANCER_MATH_ARCCOSINE:
+  case MathOperation::Arccosine:
     return acos(min(max(a, F(-1.0f)), one));
-  case LANCER_MATH_ARCTANGENT:
+  case MathOperation::Arctangent:
     return atan(a);
-  case LANCER_MATH_ARCTAN2:
+  case MathOperation::Arctan2:
     return select((a == zero) & (b == zero), zero, atan2(a, b));
-  case LANCER_MATH_SINH:
+  case MathOperation::Sinh:
     return sinh(a);
-  case LANCER_MATH_COSH:
+  case MathOperation::Cosh:
     return cosh(a);
-  case LANCER_MATH_TANH:
+  case MathOperation::Tanh:
     return tanh(a);
-  case LANCER_MATH_RADIANS:
+  case MathOperation::Radians:
     return a * F(pi / 180.0f);
-  case LANCER_MATH_DEGREES:
+  case MathOperation::Degrees:
     return a * F(180.0f / pi);
   default:
     return zero;

@@ -2,8 +2,8 @@
 // defines them; and the Musgrave Texture of before 4.1, which counts octaves differently.
 #pragma once
 
-#include "lancer.h"
 #include "nodes/gradient_noise.h"
+#include "scene/enums.h"
 #include "simd/vectors.h"
 
 namespace lancer {
@@ -22,22 +22,22 @@ template <int N, class F> LANCER_LANE void move_by_seed(F (&p)[N], int seed) {
     p[i] = p[i] + F(seed_offset(N, seed, i));
 }
 
-// kind: LANCER_NOISE_*; flags: as the node's.
+// kind: NoiseKind; flags: as the node's.
 template <int N, class F>
 static F octaves_of_noise(uint32_t kind, uint32_t flags, const F (&given)[N], const NoiseOctaves<F> &of) {
   using M = MaskOf<F>;
   const F zero(0.0f), one(1.0f);
-  const bool is_terrain = kind == LANCER_NOISE_HETERO_TERRAIN, is_ridged = kind == LANCER_NOISE_RIDGED_MULTIFRACTAL;
+  const bool is_terrain = kind == NoiseKind::HeteroTerrain, is_ridged = kind == NoiseKind::RidgedMultifractal;
   const F detail = min(F(15.0f), max(zero, of.detail)), roughness = max(zero, of.roughness);
   // The number of full octaves, and the fraction of the next.
   const F whole = floor(detail), rest = detail - whole;
-  F full_octaves = flags & LANCER_NOISE_COUNTED ? whole : whole + one;
+  F full_octaves = flags & NoiseFlag::Counted ? whole : whole + one;
   if (is_terrain || is_ridged)
     full_octaves = max(one, full_octaves);
 
   F p[N], scale = one, amplitude = is_terrain || is_ridged ? roughness : one;
   F total = zero, most = zero, more = zero, value = one, signal = zero, weight = one;
-  if (kind == LANCER_NOISE_HYBRID_MULTIFRACTAL)
+  if (kind == NoiseKind::HybridMultifractal)
     value = zero;
   M goes_on = one == one;
   for (int i = 0; i < N; ++i)
@@ -49,16 +49,16 @@ static F octaves_of_noise(uint32_t kind, uint32_t flags, const F (&given)[N], co
       break;
     F q[N];
     for (int i = 0; i < N; ++i)
-      q[i] = kind == LANCER_NOISE_FBM ? p[i] * scale : p[i];
-    const F noise = signed_noise(q, (flags & LANCER_NOISE_REPEATS) != 0);
+      q[i] = kind == NoiseKind::Fbm ? p[i] * scale : p[i];
+    const F noise = signed_noise(q, (flags & NoiseFlag::Repeats) != 0);
     const F share = select(full, one, select(partial, rest, zero));
-    if (kind == LANCER_NOISE_FBM) {
+    if (kind == NoiseKind::Fbm) {
       more = select(partial, noise * amplitude, more);
       total = select(full, total + noise * amplitude, total);
       most = select(full, most + amplitude, most);
-    } else if (kind == LANCER_NOISE_MULTIFRACTAL) {
+    } else if (kind == NoiseKind::Multifractal) {
       value = select(full | partial, value * (share * amplitude * noise + one), value);
-    } else if (kind == LANCER_NOISE_HYBRID_MULTIFRACTAL) {
+    } else if (kind == NoiseKind::HybridMultifractal) {
       goes_on = goes_on & (weight > F(0.001f)) & (full | partial);
       weight = min(weight, one);
       signal = (noise + of.offset) * amplitude;
@@ -77,11 +77,11 @@ static F octaves_of_noise(uint32_t kind, uint32_t flags, const F (&given)[N], co
       amplitude = select(full, amplitude * roughness, amplitude);
     scale = scale * of.lacunarity;
     for (int i = 0; i < N; ++i)
-      p[i] = kind == LANCER_NOISE_FBM ? p[i] : p[i] * of.lacunarity;
+      p[i] = kind == NoiseKind::Fbm ? p[i] : p[i] * of.lacunarity;
   }
-  if (kind != LANCER_NOISE_FBM)
+  if (kind != NoiseKind::Fbm)
     return value;
-  if (!(flags & LANCER_NOISE_NORMALIZED))
+  if (!(flags & NoiseFlag::Normalized))
     return total + rest * more;
   const F half(0.5f), lower = half * total / most + half;
   const F upper = half * (total + more) / (most + amplitude) + half;
@@ -99,11 +99,11 @@ static Vector3<F> noise_at(uint32_t kind, uint32_t flags, const F (&given)[N], c
       for (int k = 0; k < N; ++k)
         q[k] = given[k];
       move_by_seed(q, i);
-      p[i] = p[i] + signed_noise(q, (flags & LANCER_NOISE_REPEATS) != 0) * distortion;
+      p[i] = p[i] + signed_noise(q, (flags & NoiseFlag::Repeats) != 0) * distortion;
     }
   // Red is the texture's scalar value; the other channels are the same noise at an offset.
   F channels[3];
-  for (int channel = 0; channel < (flags & LANCER_NOISE_COLOR ? 3 : 1); ++channel) {
+  for (int channel = 0; channel < (flags & NoiseFlag::Color ? 3 : 1); ++channel) {
     F q[N];
     for (int i = 0; i < N; ++i)
       q[i] = p[i];
@@ -111,7 +111,7 @@ static Vector3<F> noise_at(uint32_t kind, uint32_t flags, const F (&given)[N], c
       move_by_seed(q, N - 1 + channel);
     channels[channel] = octaves_of_noise(kind, flags, q, of);
   }
-  if (!(flags & LANCER_NOISE_COLOR))
+  if (!(flags & NoiseFlag::Color))
     return Vector3<F>(channels[0]);
   return {channels[0], channels[1], channels[2]};
 }

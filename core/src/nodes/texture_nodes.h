@@ -58,14 +58,14 @@ template <class F> Value<F> object_attribute(const Node &node, const Site<F> &si
 template <class F> Value<F> object_info_node(const Node &node, const Site<F> &site) {
   using D = DoubleOf<F>;
   if (!site.placed)
-    return node.option == LANCER_OBJECT_ATTRIBUTE ? solid(Vector3<F>(F(0.0f))) : nothing<F>();
-  if (node.option == LANCER_OBJECT_LOCATION) {
+    return node.option == ObjectFact::Attribute ? solid(Vector3<F>(F(0.0f))) : nothing<F>();
+  if (node.option == ObjectFact::Location) {
     const Vector3<D> origin = translation_of(site, &Instance::to_world);
     return solid(narrow(in_user_world(site, origin)));
   }
-  if (node.option == LANCER_OBJECT_INDEX)
+  if (node.option == ObjectFact::Index)
     return scalar(by_lane<F>([&](int i) { return static_cast<float>(site.instance[i]->object_index); }));
-  if (node.option == LANCER_OBJECT_ATTRIBUTE)
+  if (node.option == ObjectFact::Attribute)
     return object_attribute(node, site);
   const std::vector<ObjectInfo> &all = site.scene.geometry->object_infos;
   const auto number = [&](auto which) __attribute__((always_inline)) {
@@ -74,7 +74,7 @@ template <class F> Value<F> object_info_node(const Node &node, const Site<F> &si
       return at < all.size() ? which(all.data()[at]) : which(ObjectInfo());
     });
   };
-  if (node.option != LANCER_OBJECT_COLOR)
+  if (node.option != ObjectFact::Color)
     return scalar(number([](const ObjectInfo &info) { return info.random; }));
   const auto channel = [&](int k) { return number([k](const ObjectInfo &info) { return (&info.color.x)[k]; }); };
   return {{channel(0), channel(1), channel(2)}, channel(3)};

@@ -43,57 +43,57 @@ template <class F> Value<F> vector_math_node(const Inputs<F> &in) {
   using V3 = Vector3<F>;
   const V3 a = in[0], b = in[1];
   switch (in.node.option) {
-  case LANCER_VECTOR_ADD:
+  case VectorOperation::Add:
     return solid(a + b);
-  case LANCER_VECTOR_SUBTRACT:
+  case VectorOperation::Subtract:
     return solid(a - b);
-  case LANCER_VECTOR_MULTIPLY:
+  case VectorOperation::Multiply:
     return solid(a * b);
-  case LANCER_VECTOR_DIVIDE:
+  case VectorOperation::Divide:
     return solid(divide(a, b));
-  case LANCER_VECTOR_MULTIPLY_ADD:
+  case VectorOperation::MultiplyAdd:
     return solid(a * b + in[2]);
-  case LANCER_VECTOR_CROSS_PRODUCT:
+  case VectorOperation::CrossProduct:
     return solid(cross(a, b));
-  case LANCER_VECTOR_PROJECT: {
+  case VectorOperation::Project: {
     const F length2 = dot(b, b);
     return solid(select(length2 != F(0.0f), F(dot(a, b) / length2) * b, V3(F(0.0f))));
   }
-  case LANCER_VECTOR_REFLECT: {
+  case VectorOperation::Reflect: {
     const V3 n = unit_or_zero(b);
     return solid(a - F(F(2.0f) * dot(a, n)) * n);
   }
-  case LANCER_VECTOR_DOT_PRODUCT:
+  case VectorOperation::DotProduct:
     return scalar(F(dot(a, b)));
-  case LANCER_VECTOR_DISTANCE:
+  case VectorOperation::Distance:
     return scalar(length(a - b));
-  case LANCER_VECTOR_LENGTH:
+  case VectorOperation::Length:
     return scalar(length(a));
-  case LANCER_VECTOR_SCALE:
+  case VectorOperation::Scale:
     return solid(a * in.scalar(3));
-  case LANCER_VECTOR_NORMALIZE:
+  case VectorOperation::Normalize:
     return solid(unit_or_zero(a));
-  case LANCER_VECTOR_ABSOLUTE:
+  case VectorOperation::Absolute:
     return solid(abs(a));
-  case LANCER_VECTOR_MINIMUM:
+  case VectorOperation::Minimum:
     return solid(min(a, b));
-  case LANCER_VECTOR_MAXIMUM:
+  case VectorOperation::Maximum:
     return solid(max(a, b));
-  case LANCER_VECTOR_FLOOR:
+  case VectorOperation::Floor:
     return solid(componentwise(a, [](const F &x) { return floor(x); }));
-  case LANCER_VECTOR_CEIL:
+  case VectorOperation::Ceil:
     return solid(componentwise(a, [](const F &x) { return ceil(x); }));
-  case LANCER_VECTOR_FRACTION:
+  case VectorOperation::Fraction:
     return solid(componentwise(a, [](const F &x) { return fraction(x); }));
-  case LANCER_VECTOR_MODULO:
+  case VectorOperation::Modulo:
     return solid(componentwise(a, b, [](const F &x, const F &y) { return modulo(x, y); }));
-  case LANCER_VECTOR_SNAP:
+  case VectorOperation::Snap:
     return solid(componentwise(a, b, [](const F &x, const F &y) { return floor(divide(x, y)) * y; }));
-  case LANCER_VECTOR_SINE:
+  case VectorOperation::Sine:
     return solid(componentwise(a, [](const F &x) { return sin(x); }));
-  case LANCER_VECTOR_COSINE:
+  case VectorOperation::Cosine:
     return solid(componentwise(a, [](const F &x) { return cos(x); }));
-  case LANCER_VECTOR_TANGENT:
+  case VectorOperation::Tangent:
     return solid(componentwise(a, [](const F &x) { return tan(x); }));
   default:
     return solid(V3(F(0.0f)));
@@ -115,11 +115,11 @@ template <class F> Value<F> mapping_node(const Inputs<F> &in) {
   const Vector3<F> v = in[0], location = in[1], scale = in[3];
   const Columns<F> turn = turn_of(in);
   switch (in.node.option) {
-  case LANCER_MAPPING_POINT:
+  case MappingType::Point:
     return solid(turn.times(v * scale) + location);
-  case LANCER_MAPPING_TEXTURE:
+  case MappingType::Texture:
     return solid(divide(turn.transposed_times(v - location), scale));
-  case LANCER_MAPPING_VECTOR:
+  case MappingType::Vector:
     return solid(turn.times(v * scale));
   default:
     return solid(unit_or_zero(turn.times(divide(v, scale))));

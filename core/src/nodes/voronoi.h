@@ -24,7 +24,7 @@ template <int N, class F>
 static VoronoiValue<F> voronoi_octaves(uint32_t feature, uint32_t flags, const F (&coordinate)[N], const VoronoiOctaves<F> &of,
                                        const VoronoiShape<F> &shape) {
   const F zero(0.0f), one(1.0f);
-  const bool is_second = feature == LANCER_VORONOI_F2, is_smooth = feature == LANCER_VORONOI_SMOOTH_F1;
+  const bool is_second = feature == VoronoiFeatureKind::F2, is_smooth = feature == VoronoiFeatureKind::SmoothF1;
   F distance = zero, position[N], scale = one, amplitude = one, most = zero;
   Vector3<F> color(zero);
   for (int i = 0; i < N; ++i)
@@ -56,7 +56,7 @@ static VoronoiValue<F> voronoi_octaves(uint32_t feature, uint32_t flags, const F
     scale = scale * of.lacunarity;
     amplitude = amplitude * of.roughness;
   }
-  if (flags & LANCER_VORONOI_NORMALIZED) {
+  if (flags & VoronoiFlag::Normalized) {
     F corner[N];
     for (int i = 0; i < N; ++i)
       corner[i] = F(0.5f) + F(0.5f) * shape.randomness;
@@ -64,8 +64,8 @@ static VoronoiValue<F> voronoi_octaves(uint32_t feature, uint32_t flags, const F
     distance = distance / (most * furthest);
     color = color / most;
   }
-  if (!(flags & LANCER_VORONOI_POSITION))
-    return {flags & LANCER_VORONOI_COLOR ? color : Vector3<F>(distance), distance};
+  if (!(flags & VoronoiFlag::Position))
+    return {flags & VoronoiFlag::Color ? color : Vector3<F>(distance), distance};
   // One dimension is w, the fourth coordinate.
   F axes[4] = {zero, zero, zero, zero};
   for (int i = 0; i < N; ++i)
@@ -93,15 +93,15 @@ static F voronoi_edges(uint32_t flags, const F (&coordinate)[N], const VoronoiOc
     scale = scale * of.lacunarity;
     amplitude = amplitude * of.roughness;
   }
-  return flags & LANCER_VORONOI_NORMALIZED ? distance / most : distance;
+  return flags & VoronoiFlag::Normalized ? distance / most : distance;
 }
 
 template <int N, class F>
 LANCER_LANE VoronoiValue<F> voronoi_at(uint32_t feature, uint32_t flags, const F (&coordinate)[N], const VoronoiOctaves<F> &of,
                                        const VoronoiShape<F> &shape) {
-  if (feature == LANCER_VORONOI_DISTANCE_TO_EDGE || feature == LANCER_VORONOI_N_SPHERE_RADIUS) {
-    const F number = feature == LANCER_VORONOI_N_SPHERE_RADIUS ? sphere_radius(coordinate, shape)
-                                                               : voronoi_edges(flags, coordinate, of, shape);
+  if (feature == VoronoiFeatureKind::DistanceToEdge || feature == VoronoiFeatureKind::NSphereRadius) {
+    const F number = feature == VoronoiFeatureKind::NSphereRadius ? sphere_radius(coordinate, shape)
+                                                                  : voronoi_edges(flags, coordinate, of, shape);
     return {Vector3<F>(number), number};
   }
   return voronoi_octaves(feature, flags, coordinate, of, shape);
@@ -114,8 +114,8 @@ LANCER_LANE VoronoiValue<F> voronoi_texture(uint32_t feature, uint32_t flags, co
   const F zero(0.0f), one(1.0f);
   VoronoiShape<F> shape;
   shape.metric = flags >> 2 & 3;
-  shape.by_integers = (flags & LANCER_VORONOI_INTEGERS) != 0;
-  shape.is_bounded = (flags & LANCER_VORONOI_BOUNDED) != 0;
+  shape.by_integers = (flags & VoronoiFlag::Integers) != 0;
+  shape.is_bounded = (flags & VoronoiFlag::Bounded) != 0;
   shape.smoothness = min(F(0.5f), max(zero, form.x / F(2.0f)));
   shape.exponent = form.y;
   shape.randomness = min(one, max(zero, place.z));

@@ -1,9 +1,9 @@
 // One point in each cell of a lattice, and its features: the Voronoi Texture in one to four dimensions.
 #pragma once
 
-#include "lancer.h"
 #include "nodes/cell_hash.h"
 #include "sampling/elementary.h"
+#include "scene/enums.h"
 #include "simd/memory.h"
 #include "simd/vectors.h"
 
@@ -12,7 +12,7 @@
 namespace lancer {
 
 template <class F> struct VoronoiShape {
-  uint32_t metric = LANCER_VORONOI_EUCLIDEAN;
+  uint32_t metric = VoronoiMetric::Euclidean;
   bool by_integers = false; // the hash of Blender 5 and newer, for two and more dimensions
   bool is_bounded = false;  // distances are at most 8, as before 4.0
   F smoothness, exponent, randomness;
@@ -30,13 +30,13 @@ template <int N, class F> LANCER_LANE F measure_of(const F (&way)[N], const Voro
   F sum(0.0f);
   for (int i = 0; i < N; ++i)
     switch (shape.metric) {
-    case LANCER_VORONOI_EUCLIDEAN:
+    case VoronoiMetric::Euclidean:
       sum = sum + way[i] * way[i];
       break;
-    case LANCER_VORONOI_MANHATTAN:
+    case VoronoiMetric::Manhattan:
       sum = sum + abs(way[i]);
       break;
-    case LANCER_VORONOI_CHEBYCHEV:
+    case VoronoiMetric::Chebychev:
       sum = max(sum, abs(way[i]));
       break;
     default:
@@ -45,9 +45,9 @@ template <int N, class F> LANCER_LANE F measure_of(const F (&way)[N], const Voro
   return sum;
 }
 template <int N, class F> LANCER_LANE F distance_of(const F &measure, const VoronoiShape<F> &shape) {
-  if (N > 1 && shape.metric == LANCER_VORONOI_EUCLIDEAN)
+  if (N > 1 && shape.metric == VoronoiMetric::Euclidean)
     return sqrt(measure);
-  if (N > 1 && shape.metric == LANCER_VORONOI_MINKOWSKI)
+  if (N > 1 && shape.metric == VoronoiMetric::Minkowski)
     return pow(measure, F(1.0f) / shape.exponent);
   return measure;
 }
@@ -55,9 +55,9 @@ template <int N, class F> LANCER_LANE F furthest_measure(const VoronoiShape<F> &
   const F eight(8.0f);
   if (!shape.is_bounded)
     return F(std::numeric_limits<float>::max());
-  if (N > 1 && shape.metric == LANCER_VORONOI_EUCLIDEAN)
+  if (N > 1 && shape.metric == VoronoiMetric::Euclidean)
     return eight * eight;
-  return N > 1 && shape.metric == LANCER_VORONOI_MINKOWSKI ? pow(eight, shape.exponent) : eight;
+  return N > 1 && shape.metric == VoronoiMetric::Minkowski ? pow(eight, shape.exponent) : eight;
 }
 
 // Computes the words that hash a cell: its coordinates as floats, or as integers.

@@ -6,28 +6,7 @@
 
 namespace lancer {
 
-enum class Pass : uint32_t {
-  Combined = LANCER_PASS_COMBINED,
-  Depth = LANCER_PASS_DEPTH,
-  Normal = LANCER_PASS_NORMAL,
-  Albedo = LANCER_PASS_ALBEDO,
-  Position = LANCER_PASS_POSITION,
-  ObjectIndex = LANCER_PASS_OBJECT_INDEX,
-  MaterialIndex = LANCER_PASS_MATERIAL_INDEX,
-  Uv = LANCER_PASS_UV,
-  Mist = LANCER_PASS_MIST,
-  Emission = LANCER_PASS_EMISSION, // the first of the parts of the light, in the order of LightPass
-  DiffuseDirect = LANCER_PASS_DIFFUSE_DIRECT,
-  DiffuseIndirect = LANCER_PASS_DIFFUSE_INDIRECT,
-  DiffuseColor = LANCER_PASS_DIFFUSE_COLOR,
-  TransmissionColor = LANCER_PASS_TRANSMISSION_COLOR, // the last of them
-  DenoisingNormal = LANCER_PASS_DENOISING_NORMAL,
-  DenoisingDepth = LANCER_PASS_DENOISING_DEPTH,
-  Error = LANCER_PASS_ERROR // computed by the film; samples do not contain it
-};
 inline constexpr uint32_t kPassCount = LANCER_PASS_COUNT;
-
-constexpr uint32_t bit(Pass pass) { return 1u << uint32_t(pass); }
 
 uint32_t channels(Pass pass);
 // Whether the pass stores the value of sample 0 alone: a mean of depths or indices would belong to no object.

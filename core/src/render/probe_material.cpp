@@ -2,6 +2,7 @@
 
 #include "integrator/stages/shader.h"
 #include "scene/error.h"
+#include "scene/fill.h"
 
 #include <cmath>
 

@@ -1,8 +1,9 @@
-// Checks shared by all readers of the user's records, numbers as text for their messages, and the reader of cameras.
+// The readers of the user's records, where the interface ends: checked copies, and the checks that all readers share.
 #pragma once
 
 #include "lancer.h"
 #include "scene/camera.h"
+#include "scene/description.h"
 #include "scene/error.h"
 
 #include <cstdio>
@@ -25,6 +26,23 @@ inline void check_flags(const std::string &where, uint32_t flags, uint32_t known
   if (flags & ~known)
     bad_argument(where + "flags " + std::to_string(flags) + " has bits beyond the last flag");
 }
+
+// Each function checks one record and copies it into the description. Throws Error, which names the object and the value; the
+// description is then unchanged.
+void add_mesh(Description &description, const lancer_mesh &mesh);
+void add_instances(Description &description, uint32_t count, const lancer_instance *instances, uint32_t slot_count,
+                   const uint32_t *slots, const char *names, size_t names_size);
+void set_object_infos(Description &description, uint32_t count, const float *infos);
+void add_object_attribute(Description &description, const char *name, uint32_t count, const float *values);
+void add_material(Description &description, const lancer_material &material);
+void add_light(Description &description, const lancer_light &light);
+void add_image(Description &description, const lancer_image &image);
+void set_world(Description &description, const lancer_world &world);
+
+// Checks and copies the nodes of an owner ("material 'Wood'"); check_reference() checks a parameter that may refer to one of
+// them.
+Program read_program(Description &description, const std::string &owner, const lancer_node *nodes, uint32_t count);
+void check_reference(const std::string &owner, const char *what, const lancer_parameter &parameter, const Program &program);
 
 // Checks and copies a camera; throws an Error for invalid values.
 Camera read_camera(const lancer_camera &source);

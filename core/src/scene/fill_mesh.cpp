@@ -1,6 +1,7 @@
 // Checks and copies meshes: every index in range, every kept face of finite and non-zero area.
 #include "scene/description.h"
 #include "scene/error.h"
+#include "scene/fill.h"
 #include "scene/geometry.h"
 
 #include <cmath>

@@ -67,7 +67,7 @@ struct Instance {
   uint32_t mesh = 0;
   uint32_t first_slot = 0, slot_count = 0;
   uint32_t object_index = 0;
-  uint32_t hidden_from = 0; // LANCER_RAY_* bits
+  uint32_t hidden_from = 0; // RayKind bits
   bool holdout = false;
   float terminator = 0.0f;   // cosine below which shadow rays start on the curved surface
   uint32_t number = 0;       // in the user's order of adding

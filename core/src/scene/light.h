@@ -28,7 +28,7 @@ struct LightDescription {
   glm::vec2 size{0.0f};
   AreaShape shape = AreaShape::Rectangle;
   float spread = 3.14159265f;
-  uint32_t hidden_from = 0; // LANCER_RAY_* bits
+  uint32_t hidden_from = 0; // RayKind bits
   bool no_shadow = false;
   // CLASSIC only.
   Falloff falloff = Falloff::Physical;
@@ -41,7 +41,7 @@ struct World {
   Program program;
   Parameter radiance;
   Schedule schedule;                // of radiance
-  uint32_t hidden_from = 0;         // LANCER_RAY_* bits
+  uint32_t hidden_from = 0;         // RayKind bits
   uint32_t map_resolution = 0;      // 0 = by its images
   std::optional<glm::vec3> ambient; // replaces the mean radiance for Ka
 

@@ -40,7 +40,7 @@ struct Material {
   Program program;
   Parameter emission, transmittance, holdout, ambient, displacement, normal;
   uint32_t index = 0;
-  uint32_t flags = 0; // LANCER_MATERIAL_*
+  uint32_t flags = 0; // MaterialFlag
 
   std::shared_ptr<const ReadyLobe[]> ready; // by number of lobe; set by commit()
 

@@ -22,11 +22,11 @@ Schedule Program::schedule(std::span<const Parameter> parameters) const {
       continue;
     const Node &node = nodes[i];
     for (int k = 0; k < 5; ++k) {
-      const bool height = node.kind == LANCER_NODE_BUMP && k == 2;
+      const bool height = node.kind == NodeKind::Bump && k == 2;
       if (!height || node.inputs[k].node < int32_t(node.first))
         mark(node.inputs[k], needed);
     }
-    if (node.kind != LANCER_NODE_BUMP)
+    if (node.kind != NodeKind::Bump)
       continue;
     // A bump evaluates its own height nodes. Their inputs from earlier nodes belong to this schedule.
     for (const uint16_t number : heights[node.heights]) {
@@ -45,18 +45,18 @@ Schedule Program::schedule(std::span<const Parameter> parameters) const {
 
 bool asks_no_place(uint32_t kind) {
   switch (kind) {
-  case LANCER_NODE_ALPHA:
-  case LANCER_NODE_MAPPING:
-  case LANCER_NODE_MATH:
-  case LANCER_NODE_VECTOR_MATH:
-  case LANCER_NODE_MIX:
-  case LANCER_NODE_SEPARATE:
-  case LANCER_NODE_COMBINE:
-  case LANCER_NODE_GREY:
-  case LANCER_NODE_CLAMP:
-  case LANCER_NODE_GAMMA:
-  case LANCER_NODE_INVERT:
-  case LANCER_NODE_COLOR_MODEL:
+  case NodeKind::Alpha:
+  case NodeKind::Mapping:
+  case NodeKind::Math:
+  case NodeKind::VectorMath:
+  case NodeKind::Mix:
+  case NodeKind::Separate:
+  case NodeKind::Combine:
+  case NodeKind::Grey:
+  case NodeKind::Clamp:
+  case NodeKind::Gamma:
+  case NodeKind::Invert:
+  case NodeKind::ColorModel:
     return true;
   default:
     return false;

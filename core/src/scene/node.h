@@ -1,7 +1,7 @@
 // Nodes: computations of a material or the world at a hit, before its lobes are known.
 #pragma once
 
-#include "lancer.h"
+#include "scene/enums.h"
 #include "scene/image.h"
 #include "scene/surface.h"
 
@@ -29,7 +29,7 @@ struct Node {
 };
 
 // Returns whether a height evaluation reads an input: a bump inside the height of another bump only passes on its normal.
-inline bool is_read_in_height(const Node &node, int input) { return node.kind != LANCER_NODE_BUMP || input == 3; }
+inline bool is_read_in_height(const Node &node, int input) { return node.kind != NodeKind::Bump || input == 3; }
 
 // Numbers of nodes in order of evaluation.
 using Schedule = std::vector<uint16_t>;

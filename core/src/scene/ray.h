@@ -1,6 +1,8 @@
 // Input and output of every accelerator.
 #pragma once
 
+#include "scene/enums.h"
+
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
@@ -19,7 +21,7 @@ struct Ray {
   // The flat primitive on which the ray starts and which it does not hit again; kNone if there is none.
   uint32_t skip_instance = kNone;
   uint32_t skip_primitive = kNone;
-  // Bits of LANCER_RAY_*: the kind of the ray. A ray passes an object that is hidden from all of its kinds as if the object did
+  // Bits of RayKind: the kind of the ray. A ray passes an object that is hidden from all of its kinds as if the object did
   // not exist.
   uint32_t kinds = ~0u;
 };

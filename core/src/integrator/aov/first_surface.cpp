@@ -27,7 +27,7 @@ void forget_place(SampleResult &result) {
 void record_first_surface(const Scene &scene, const IntegratorSettings &settings, const Surface &surface,
                           const glm::vec3 &normal, SampleResult &result) {
   result.normal = normal;
-  if (!(settings.passes & 1u << LANCER_PASS_UV))
+  if (!(settings.passes & bit(Pass::Uv)))
     return;
   // A mesh without a UV map shows nothing, not even the third channel.
   const Instance &instance = scene.geometry.instances[surface.instance];

@@ -50,9 +50,9 @@ private:
   void miss(const Ray &ray, SampleResult &result) {
     if (settings_.film_transparent)
       result.alpha = 0.0f;
-    else if (!(scene_.world.hidden_from & LANCER_RAY_CAMERA))
+    else if (!(scene_.world.hidden_from & RayKind::Camera))
       result.radiance = scene_.lights.environment().radiance(glm::normalize(ray.d), sky_values_, &camera_, &ray.o,
-                                                             {.kinds = LANCER_RAY_CAMERA});
+                                                             {.kinds = RayKind::Camera});
     add_sky_guides(begin_guides(settings_, passes_.features()), result);
   }
 
@@ -61,7 +61,7 @@ private:
       return;
     surfaces_.find();
     surfaces_.ask_nodes(
-        [&](uint32_t lane) { return View{.wo = get(surfaces_.surfaces().wo, lane), .path = {.kinds = LANCER_RAY_CAMERA}}; });
+        [&](uint32_t lane) { return View{.wo = get(surfaces_.surfaces().wo, lane), .path = {.kinds = RayKind::Camera}}; });
     surfaces_.build_lobes();
     // This picture shows every surface as opaque.
     surfaces_.make_opaque();

@@ -39,8 +39,8 @@ glm::vec3 ambient_light(const Scene &scene, const Camera &camera) {
 ClassicIntegrator::ClassicIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
     : scene_(scene), camera_(camera), settings_(settings), generator_(camera, settings), light_(scene, &camera),
       shadows_(scene, camera, settings), passes_(settings), queues_(scene), surfaces_(scene, camera, settings),
-      kernel_(classic_kernel()), ambient_(ambient_light(scene, camera)),
-      only_combined_(settings.passes == 1u << LANCER_PASS_COMBINED), sky_values_(scene.world.program.nodes.size()) {}
+      kernel_(classic_kernel()), ambient_(ambient_light(scene, camera)), only_combined_(settings.passes == bit(Pass::Combined)),
+      sky_values_(scene.world.program.nodes.size()) {}
 
 void ClassicIntegrator::run(std::span<const SampleAddress> addresses, std::span<SampleResult> results,
                             std::vector<PathVertex> *trace) {
@@ -108,7 +108,7 @@ void ClassicIntegrator::miss(const Branch &branch, const glm::dvec3 &eye, const 
   // A transparent film does not show the environment itself, but the environment's pass does.
   if (branch.depth == 0 && settings_.film_transparent) {
     result.alpha -= mean(branch.weight);
-    if (!(settings_.passes & 1u << LANCER_PASS_ENVIRONMENT))
+    if (!(settings_.passes & bit(Pass::Environment)))
       return;
   }
   if (!(branch.kinds & ~scene_.world.hidden_from))
@@ -189,9 +189,9 @@ void ClassicIntegrator::branch_out(size_t number, SampleResult &result) {
   if (branch.depth >= settings_.max_bounces)
     return;
   if (vertex.mirrors)
-    spawn(child(vertex.reflected), vertex, vertex.mirrored, vertex.reflected, LANCER_RAY_GLOSSY, result);
+    spawn(child(vertex.reflected), vertex, vertex.mirrored, vertex.reflected, RayKind::Glossy, result);
   if (vertex.refracts)
-    spawn(child(vertex.refracted), vertex, vertex.through, vertex.refracted, LANCER_RAY_TRANSMISSION, result);
+    spawn(child(vertex.refracted), vertex, vertex.through, vertex.refracted, RayKind::Transmission, result);
 }
 
 void ClassicIntegrator::spawn(Branch child, const Vertex &vertex, const glm::vec3 &direction, const glm::vec3 &weight,

@@ -77,10 +77,10 @@ private:
     glm::vec3 weight{1.0f}; // throughput
     uint32_t slot = 0;
     uint32_t depth = 0;
-    uint32_t kinds = LANCER_RAY_CAMERA; // of the ray
-    uint32_t layers = 0;                // transparent surfaces passed
-    bool seen = false;                  // the first surface has been recorded
-    double passed = 0.0;                // t of the camera ray up to its last layer
+    uint32_t kinds = RayKind::Camera; // of the ray
+    uint32_t layers = 0;              // transparent surfaces passed
+    bool seen = false;                // the first surface has been recorded
+    double passed = 0.0;              // t of the camera ray up to its last layer
     DenoisingGuides features{};
   };
   // Results of shading a ray's vertex, kept until its light is summed: vertices are shaded in the order of their code, but a

@@ -20,7 +20,7 @@ struct alignas(64) IrradianceBlock {
 struct ClassicKernel {
   // Computes the mirrored and the transmitted share and their directions.
   void (*branch)(const LobeBlock &lobes, BranchBlock &branches);
-  // Computes the light of samples of one light without occlusion, and without the branch's weight. hidden_from: LANCER_RAY_*
+  // Computes the light of samples of one light without occlusion, and without the branch's weight. hidden_from: RayKind
   // bits of the rays that do not see the light.
   void (*illuminate)(const SurfaceBlock &surfaces, const LobeBlock &lobes, const LightSamples &samples,
                      const ClassicLight &light, uint32_t hidden_from, LitBlock &lit, IrradianceBlock &irradiance);

@@ -3,10 +3,10 @@
 #pragma once
 
 #include "bsdf/bsdf.h"
-#include "lancer.h"
 #include "lights/light_lanes.h"
 #include "sampling/elementary.h"
 #include "scene/color.h"
+#include "scene/enums.h"
 
 #include <limits>
 
@@ -59,7 +59,7 @@ inline constexpr uint32_t kClassicShapes = shape_bit(LobeShape::Lambert) | shape
 //   PHONG        Ks (R.V)^n lc / pi
 //   BLINN_PHONG  Ks (N.H)^n lc / pi
 // C of the lectures is lc / pi, so that Kd means the same in all models. Lobes of other kinds give the same as in PATH, on the
-// viewer's side. hidden: LANCER_RAY_* bits of the rays that do not see the light.
+// viewer's side. hidden: RayKind bits of the rays that do not see the light.
 template <class F>
 LANCER_LANE Vec3<F> classic_illumination(const Bsdf<F> &bsdf, const Vec3<F> &wi_world, const ClassicLight &light,
                                          const Vec3<F> &irradiance, uint32_t hidden) {
@@ -103,9 +103,9 @@ LANCER_LANE Vec3<F> classic_illumination(const Bsdf<F> &bsdf, const Vec3<F> &wi_
     diffuse += rest.part[static_cast<int>(Component::Diffuse)];
     specular += rest.part[static_cast<int>(Component::Glossy)];
   }
-  if (hidden & LANCER_RAY_DIFFUSE)
+  if (hidden & RayKind::Diffuse)
     diffuse = V(zero);
-  if (hidden & LANCER_RAY_GLOSSY)
+  if (hidden & RayKind::Glossy)
     specular = V(zero);
   return irradiance * (diffuse * V(light.diffuse_color) + specular * V(light.specular_color));
 }

@@ -1,6 +1,6 @@
 #include "integrator/path/path.h"
+#include "scene/enums.h"
 
-#include "lancer.h"
 #include "scene/color.h"
 
 #include <algorithm>
@@ -103,7 +103,7 @@ void PathIntegrator::add_sky() {
     for (uint32_t lane = 0; lane < now.size(); ++lane) {
       const Path &path = queue_.paths[now[lane]];
       met_.add_miss(lane, queue_.rays[now[lane]].d, path.light_path(0.0),
-                    path.kinds == LANCER_RAY_CAMERA ? &queue_.from[now[lane]].p : nullptr);
+                    path.kinds == RayKind::Camera ? &queue_.from[now[lane]].p : nullptr);
     }
     met_.look_at_sky(uint32_t(now.size()));
     for (uint32_t lane = 0; lane < now.size(); ++lane) {

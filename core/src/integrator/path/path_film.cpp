@@ -200,7 +200,7 @@ bool PathFilm::miss(const Path &path) {
   if (!path.in_view || !settings_.film_transparent)
     return true;
   cut(path, mean(path.beta));
-  return (settings_.passes & 1u << LANCER_PASS_ENVIRONMENT) != 0;
+  return (settings_.passes & bit(Pass::Environment)) != 0;
 }
 
 WaitingLight PathFilm::waiting(const Path &path, const Floats (&share)[2][3], uint32_t lane) const {

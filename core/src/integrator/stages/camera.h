@@ -56,7 +56,7 @@ public:
         ray.tmin = camera_.clip_start;
         ray.d = {rays_.d[0][lane], rays_.d[1][lane], rays_.d[2][lane]};
         ray.tmax = camera_.clip_end;
-        ray.kinds = LANCER_RAY_CAMERA;
+        ray.kinds = RayKind::Camera;
       }
     }
   }

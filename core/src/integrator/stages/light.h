@@ -23,7 +23,7 @@ struct alignas(64) LightChoices {
 struct alignas(64) LightSamples {
   Doubles wi[3], target[3], distance, pdf;
   Floats radiance[3];
-  Words delta, hidden; // hidden: LANCER_RAY_* bits of the rays that do not see the light
+  Words delta, hidden; // hidden: RayKind bits of the rays that do not see the light
   uint32_t far = 0;    // bits of lanes: the light is at infinity
 };
 

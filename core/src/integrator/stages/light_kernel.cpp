@@ -1,10 +1,10 @@
 // Compiled once per instruction set, with LANCER_ISA as its name. This file must emit no shared (weak) symbol: see
 // bvh_kernel.cpp.
 #include "integrator/stages/light.h"
+#include "scene/enums.h"
 
 #include "integrator/stages/lobe_lanes.h"
 #include "integrator/stages/terminator.h"
-#include "lancer.h"
 #include "lights/sample_light.h"
 #include "lights/seen_face.h"
 #include "scene/hit_surface.h"
@@ -122,8 +122,8 @@ LANCER_LANE void light_of(const LitVertices &vertices, const LightSamples &sampl
   const Bsdf<F> &bsdf = lobes_of(lobes, first);
   const V3 wi = narrow(load3(samples.wi, first));
   // In the order of Component.
-  const M hidden[3] = {has_bit(samples.hidden + first, LANCER_RAY_DIFFUSE), has_bit(samples.hidden + first, LANCER_RAY_GLOSSY),
-                       has_bit(samples.hidden + first, LANCER_RAY_TRANSMISSION)};
+  const M hidden[3] = {has_bit(samples.hidden + first, RayKind::Diffuse), has_bit(samples.hidden + first, RayKind::Glossy),
+                       has_bit(samples.hidden + first, RayKind::Transmission)};
   const bool hides = any(hidden[0] | hidden[1] | hidden[2]);
   const BsdfValue<F> value = bsdf.eval_lit(wi, kAllShapes, hides ? hidden : nullptr);
   const V3 f = value.f();

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "integrator/sample.h"
-#include "lancer.h"
 
 namespace lancer {
 
@@ -18,10 +17,9 @@ class LightPasses {
 public:
   explicit LightPasses(const IntegratorSettings &settings)
       : wanted_((settings.passes & kAnyLight) != 0), components_((settings.passes & kAnyComponent) != 0),
-        occlusion_((settings.passes & 1u << LANCER_PASS_AMBIENT_OCCLUSION) != 0),
-        mist_((settings.passes & 1u << LANCER_PASS_MIST) != 0), uv_((settings.passes & 1u << LANCER_PASS_UV) != 0),
-        features_((settings.passes & kAnyFeature) != 0), places_((settings.passes & kPlaces) != 0),
-        only_places_((settings.passes & ~(kPlaces | kAlways)) == 0) {}
+        occlusion_((settings.passes & bit(Pass::AmbientOcclusion)) != 0), mist_((settings.passes & bit(Pass::Mist)) != 0),
+        uv_((settings.passes & bit(Pass::Uv)) != 0), features_((settings.passes & kAnyFeature) != 0),
+        places_((settings.passes & kPlaces) != 0), only_places_((settings.passes & ~(kPlaces | kAlways)) == 0) {}
 
   // Whether any part of SampleResult::light is requested.
   bool wanted() const { return wanted_; }
@@ -58,13 +56,12 @@ public:
   }
 
 private:
-  static constexpr uint32_t kAnyLight = (1u << (LANCER_PASS_TRANSMISSION_COLOR + 1)) - (1u << LANCER_PASS_EMISSION);
-  static constexpr uint32_t kAnyComponent = (1u << (LANCER_PASS_TRANSMISSION_COLOR + 1)) - (1u << LANCER_PASS_DIFFUSE_DIRECT);
-  static constexpr uint32_t kAnyFeature =
-      1u << LANCER_PASS_ALBEDO | 1u << LANCER_PASS_DENOISING_NORMAL | 1u << LANCER_PASS_DENOISING_DEPTH;
+  static constexpr uint32_t kAnyLight = 2u * bit(Pass::TransmissionColor) - bit(Pass::Emission);
+  static constexpr uint32_t kAnyComponent = 2u * bit(Pass::TransmissionColor) - bit(Pass::DiffuseDirect);
+  static constexpr uint32_t kAnyFeature = bit(Pass::Albedo) | bit(Pass::DenoisingNormal) | bit(Pass::DenoisingDepth);
   static constexpr uint32_t kPlaces =
-      1u << LANCER_PASS_DEPTH | 1u << LANCER_PASS_POSITION | 1u << LANCER_PASS_OBJECT_INDEX | 1u << LANCER_PASS_MATERIAL_INDEX;
-  static constexpr uint32_t kAlways = 1u << LANCER_PASS_COMBINED | 1u << LANCER_PASS_ERROR;
+      bit(Pass::Depth) | bit(Pass::Position) | bit(Pass::ObjectIndex) | bit(Pass::MaterialIndex);
+  static constexpr uint32_t kAlways = bit(Pass::Combined) | bit(Pass::Error);
   bool wanted_, components_, occlusion_, mist_, uv_, features_, places_, only_places_;
 };
 

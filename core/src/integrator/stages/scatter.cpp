@@ -1,6 +1,6 @@
 #include "integrator/stages/scatter.h"
+#include "scene/enums.h"
 
-#include "lancer.h"
 #include "scene/color.h"
 
 #include <algorithm>
@@ -31,9 +31,7 @@ bool ScatterStage::survives(uint32_t scatterings, float u, float sharers, glm::v
 }
 
 uint32_t ScatterStage::kind(uint32_t lane) const {
-  return next_.transmitted >> lane & 1 ? LANCER_RAY_TRANSMISSION
-         : next_.diffuse >> lane & 1   ? LANCER_RAY_DIFFUSE
-                                       : LANCER_RAY_GLOSSY;
+  return next_.transmitted >> lane & 1 ? RayKind::Transmission : next_.diffuse >> lane & 1 ? RayKind::Diffuse : RayKind::Glossy;
 }
 
 void ScatterStage::write_ray(uint32_t lane, const Hit &hit, uint32_t kinds, Ray &ray) const {

@@ -47,7 +47,7 @@ public:
   static bool survives(uint32_t scatterings, float u, float sharers, glm::vec3 &beta);
   // Writes the next ray of a lane in place.
   void write_ray(uint32_t lane, const Hit &hit, uint32_t kinds, Ray &ray) const;
-  // Returns the LANCER_RAY_* bit of a lane's next ray.
+  // Returns the RayKind bit of a lane's next ray.
   uint32_t kind(uint32_t lane) const;
 
   const ScatterBlock &next() const { return next_; }

@@ -24,7 +24,7 @@ glm::vec3 Shader::transmittance(const Ray &ray, const Hit &hit, const LightPath<
   if (number == kNone)
     return glm::vec3(0.0f);
   const Material &material = scene_.materials[number];
-  if (!material.transmits() || (material.flags & LANCER_MATERIAL_OPAQUE_SHADOWS))
+  if (!material.transmits() || (material.flags & MaterialFlag::OpaqueShadows))
     return glm::vec3(0.0f);
   // Use the cheapest evaluation that suffices.
   if (!material.transmittance.varies())

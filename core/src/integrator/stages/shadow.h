@@ -45,7 +45,7 @@ public:
   void set_light_path(const LightPath<float> &path) {
     light_paths_.resize(rays_.size(), shadow_path());
     light_paths_.back() = path;
-    light_paths_.back().kinds = LANCER_RAY_SHADOW;
+    light_paths_.back().kinds = RayKind::Shadow;
   }
 
   // Queues light that nothing occludes.
@@ -75,7 +75,7 @@ private:
     uint32_t passed = 0;          // surfaces passed so far
   };
 
-  static LightPath<float> shadow_path() { return {.kinds = LANCER_RAY_SHADOW}; }
+  static LightPath<float> shadow_path() { return {.kinds = RayKind::Shadow}; }
   // Traces rays where all surfaces are opaque: any hit occludes.
   uint64_t trace_solid();
   // Traces rays where some surfaces transmit light.

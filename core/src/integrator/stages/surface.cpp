@@ -15,7 +15,7 @@ namespace {
 
 MeansWanted means_wanted(const IntegratorSettings &settings) {
   const LightPasses passes(settings);
-  return {.normal = (settings.passes >> LANCER_PASS_NORMAL & 1) != 0,
+  return {.normal = (settings.passes & bit(Pass::Normal)) != 0,
           .matt_normal = passes.occlusion(),
           .shown = passes.components(),
           .mixture = passes.features(),

@@ -78,7 +78,7 @@ Ray shadow_ray(const Geometry &geometry, const Surface &surface, const glm::vec3
   }
   if (!far)
     ray.d = sample.target - ray.o;
-  ray.kinds = LANCER_RAY_SHADOW;
+  ray.kinds = RayKind::Shadow;
   return ray;
 }
 

@@ -1,6 +1,6 @@
 #include "integrator/stages/texture_prefetch.h"
+#include "scene/enums.h"
 
-#include "lancer.h"
 #include "nodes/image.h"
 #include "scene/attribute.h"
 #include "scene/image.h"
@@ -25,12 +25,12 @@ TexturePrefetch::TexturePrefetch(const Scene &scene) : scene_(scene) {
 TexturePrefetch::Picture TexturePrefetch::find(const Scene &scene, const Material &material) {
   const std::vector<Node> &nodes = material.program.nodes;
   for (const Node &node : nodes) {
-    if (node.kind != LANCER_NODE_IMAGE || node.option != LANCER_PROJECT_FLAT || node.image_count != 1 ||
+    if (node.kind != NodeKind::Image || node.option != ImageProjection::Flat || node.image_count != 1 ||
         !node.inputs[0].varies())
       continue;
     const Node &source = nodes[size_t(node.inputs[0].node)];
     const Image &image = scene.images[node.image];
-    if (source.kind == LANCER_NODE_COORDINATE && source.option == LANCER_COORDINATE_UV && image.bytes() >= kLarge)
+    if (source.kind == NodeKind::Coordinate && source.option == Coordinate::Uv && image.bytes() >= kLarge)
       return {&image, source.name, static_cast<Extension>(node.flags & 0xf)};
   }
   return {};

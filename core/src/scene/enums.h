@@ -1,0 +1,85 @@
+// The numbers of the interface that records of a scene hold.
+// Generated from core/include/lancer.h by `make bindings`; changes here are lost.
+#pragma once
+
+#include <cstdint>
+
+namespace lancer {
+
+// clang-format off
+struct RayKind { enum : uint32_t {
+  Camera = 1, Diffuse = 2, Glossy = 4, Transmission = 8, Shadow = 16, Volume = 32
+}; };
+struct NodeKind { enum : uint32_t {
+  Coordinate = 0, Attribute = 1, Image = 2, Environment = 3, Alpha = 4, Mapping = 5, Transform = 6, Math = 7, VectorMath = 8,
+  Mix = 9, Separate = 10, Combine = 11, Grey = 12, Fresnel = 13, LayerWeight = 14, NormalMap = 15, Bump = 16, Tangent = 17,
+  Clamp = 18, Displacement = 19, Gamma = 20, Invert = 21, Noise = 22, Voronoi = 23, Gradient = 24, Curves = 25, ObjectInfo = 26,
+  LightPath = 27, ColorModel = 28
+}; };
+struct AttributeFlag { enum : uint32_t {
+  Opaque = 1, First = 2, Still = 4
+}; };
+struct ColorModel { enum : uint32_t {
+  ToHsv = 0, FromHsv = 1, ToHsl = 2, FromHsl = 3
+}; };
+struct ObjectFact { enum : uint32_t {
+  Location = 0, Color = 1, Index = 2, Random = 3, Attribute = 4
+}; };
+struct PathFact { enum : uint32_t {
+  IsCamera = 0, IsShadow = 1, IsDiffuse = 2, IsGlossy = 3, IsSingular = 4, IsReflection = 5, IsTransmission = 6, IsVolume = 7,
+  Length = 8, Depth = 9, DiffuseDepth = 10, GlossyDepth = 11, TransparentDepth = 12, TransmissionDepth = 13, PortalDepth = 14
+}; };
+struct NoiseKind { enum : uint32_t {
+  Fbm = 0, Multifractal = 1, HybridMultifractal = 2, RidgedMultifractal = 3, HeteroTerrain = 4
+}; };
+struct NoiseFlag { enum : uint32_t {
+  Normalized = 4, Repeats = 8, Counted = 16, Color = 32
+}; };
+struct VoronoiFeatureKind { enum : uint32_t {
+  F1 = 0, F2 = 1, SmoothF1 = 2, DistanceToEdge = 3, NSphereRadius = 4
+}; };
+struct VoronoiMetric { enum : uint32_t {
+  Euclidean = 0, Manhattan = 1, Chebychev = 2, Minkowski = 3
+}; };
+struct VoronoiFlag { enum : uint32_t {
+  Normalized = 16, Color = 32, Position = 64, Integers = 128, Bounded = 256
+}; };
+struct GradientKind { enum : uint32_t {
+  Linear = 0, Quadratic = 1, Easing = 2, Diagonal = 3, Spherical = 4, QuadraticSphere = 5, Radial = 6
+}; };
+struct Coordinate { enum : uint32_t {
+  Generated = 0, Normal = 1, Uv = 2, Object = 3, Camera = 4, Window = 5, Reflection = 6, Position = 7, ShadingNormal = 8,
+  TrueNormal = 9, Incoming = 10, Backfacing = 11, Parametric = 12
+}; };
+struct ImageProjection { enum : uint32_t {
+  Flat = 0, Box = 1, Sphere = 2, Tube = 3
+}; };
+struct EnvironmentProjection { enum : uint32_t {
+  Equirectangular = 0, MirrorBall = 1, Cube = 2
+}; };
+struct MappingType { enum : uint32_t {
+  Point = 0, Texture = 1, Vector = 2, Normal = 3
+}; };
+struct MathOperation { enum : uint32_t {
+  Add = 0, Subtract = 1, Multiply = 2, Divide = 3, MultiplyAdd = 4, Power = 5, Logarithm = 6, Sqrt = 7, InverseSqrt = 8,
+  Absolute = 9, Exponent = 10, Minimum = 11, Maximum = 12, LessThan = 13, GreaterThan = 14, Sign = 15, Compare = 16, SmoothMin =
+  17, SmoothMax = 18, Round = 19, Floor = 20, Ceil = 21, Trunc = 22, Fract = 23, Modulo = 24, FlooredModulo = 25, Wrap = 26,
+  Snap = 27, Pingpong = 28, Sine = 29, Cosine = 30, Tangent = 31, Arcsine = 32, Arccosine = 33, Arctangent = 34, Arctan2 = 35,
+  Sinh = 36, Cosh = 37, Tanh = 38, Radians = 39, Degrees = 40
+}; };
+struct VectorOperation { enum : uint32_t {
+  Add = 0, Subtract = 1, Multiply = 2, Divide = 3, MultiplyAdd = 4, CrossProduct = 5, Project = 6, Reflect = 7, DotProduct = 8,
+  Distance = 9, Length = 10, Scale = 11, Normalize = 12, Absolute = 13, Minimum = 14, Maximum = 15, Floor = 16, Ceil = 17,
+  Fraction = 18, Modulo = 19, Snap = 20, Sine = 21, Cosine = 22, Tangent = 23
+}; };
+struct MixMode { enum : uint32_t {
+  Mix = 0, Darken = 1, Multiply = 2, Burn = 3, Lighten = 4, Screen = 5, Dodge = 6, Add = 7, Overlay = 8, SoftLight = 9,
+  LinearLight = 10, Difference = 11, Exclusion = 12, Subtract = 13, Divide = 14, Hue = 15, Saturation = 16, Color = 17, Value =
+  18
+}; };
+struct MaterialFlag { enum : uint32_t {
+  NoBumpCorrection = 1, NotALight = 2, OpaqueShadows = 4, KeepNormals = 8
+}; };
+// clang-format on
+
+} // namespace lancer
