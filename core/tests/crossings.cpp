@@ -1,5 +1,5 @@
 // Transparent layers along a ray: each place once, in order of distance.
-#include "integrator/stages/crossings.h"
+#include "integrator/stages/hit.h"
 
 #include <algorithm>
 #include <cmath>

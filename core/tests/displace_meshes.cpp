@@ -3,7 +3,7 @@
 #include "nodes_lab.h"
 
 #include "compile/steps.h"
-#include "scene/attribute.h"
+#include "scene/surface.h"
 
 #include <cmath>
 

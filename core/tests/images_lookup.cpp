@@ -2,7 +2,6 @@
 #include "nodes_lab.h"
 
 #include "nodes/image.h"
-#include "nodes/image_view.h"
 
 #include <cmath>
 

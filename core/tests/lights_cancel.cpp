@@ -1,5 +1,5 @@
 // Building many lights ends soon after it is cancelled.
-#include "lights/emissive_faces.h"
+#include "lights/emission.h"
 #include "lights/light_set.h"
 
 #include <atomic>

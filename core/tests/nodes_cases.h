@@ -2,7 +2,7 @@
 #pragma once
 
 #include "nodes_lab.h"
-#include "scene/attribute.h"
+#include "scene/surface.h"
 
 #include <cmath>
 #include <limits>

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "bsdf/fresnel.h"
-#include "bsdf/ready_lobe.h"
+#include "bsdf/material_lobes.h"
 #include "principled_lab.h"
 #include "statistics.h"
 

@@ -1,5 +1,5 @@
 // Sampling of rectangles: directions are uniform over the solid angle.
-#include "sampling/spherical_rectangle.h"
+#include "sampling/spherical.h"
 
 #include <gtest/gtest.h>
 #include <vector>

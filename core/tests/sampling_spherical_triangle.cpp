@@ -1,5 +1,5 @@
 // Sampling of triangles: directions are uniform over the solid angle.
-#include "sampling/spherical_triangle.h"
+#include "sampling/spherical.h"
 
 #include <gtest/gtest.h>
 #include <vector>

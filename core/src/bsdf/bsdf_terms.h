@@ -8,7 +8,7 @@
 #include "bsdf/microfacet_terms.h"
 #include "bsdf/normals.h"
 #include "bsdf/sheen.h"
-#include "scene/color.h"
+#include "simd/vectors.h"
 
 namespace lancer {
 

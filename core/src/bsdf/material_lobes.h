@@ -1,12 +1,169 @@
-// Builds the lobes of a shading point from a material and the values of its nodes. F is a float, or lanes of floats whose
-// materials are of one class.
+// The lobes of a material: the parts that are the same at every hit, which commit computes, and the lobes at a hit. F is a
+// float, or lanes of floats whose materials are of one class.
 #pragma once
 
+#include "bsdf/cached_plans.h"
 #include "bsdf/principled.h"
-#include "bsdf/ready_lobe.h"
 #include "scene/material.h"
 
+#include <string>
+#include <vector>
+
 namespace lancer {
+
+// Flags of the lobe inputs that differ from their neutral value; the others need not be read.
+struct LobeParts {
+  LobeParts() = default;
+  LobeParts(const LobeInputs<float> &inputs, const PrincipledInputs<float> &in);
+  bool normal = false, tangent = false;
+  // Only of Principled.
+  bool coat_normal = false, coat_tint = false, diffuse_roughness = false, emission = false, sheen = false, coat = false,
+       metal = false, glass = false;
+};
+
+struct ReadyLobe {
+  // The inputs that are constants; an input that varies is 0.
+  LobeInputs<float> inputs;
+  PrincipledInputs<float> principled;
+  LobeParts parts;
+  // By side (outside, inside) and Layer. The facets of other lobes are stored at PrincipledLayer::Gloss.
+  std::shared_ptr<const CachedPlan> plans[2][kLayerCount];
+
+  // Returns a key of the code that the lobe runs, as far as it does not depend on results of nodes. Lobes with equal keys
+  // differ in numbers alone.
+  std::string code() const;
+
+  bool has(PrincipledLayer layer) const { return plans[0][static_cast<int>(layer)] != nullptr; }
+  const CachedPlan *plan(PrincipledLayer layer, bool inside) const { return plans[inside][static_cast<int>(layer)].get(); }
+};
+
+#define LANCER_NAME(kind, name, spoken, given) name,
+enum class PrincipledParameter { LANCER_PRINCIPLED_PARAMETERS(LANCER_NAME) };
+#undef LANCER_NAME
+
+// Whether a parameter has to be read for a lobe of these parts: an absent layer needs none of its parameters, and the
+// parameters of planned facets are in the plan.
+LANCER_LANE constexpr bool needed(PrincipledParameter parameter, const LobeParts &parts, bool planned) {
+  using P = PrincipledParameter;
+  switch (parameter) {
+  case P::metallic:
+    return parts.metal;
+  case P::transmission:
+    return parts.glass;
+  case P::coat:
+    return parts.coat;
+  case P::coat_tint:
+    return parts.coat_tint;
+  case P::coat_normal:
+    return parts.coat_normal;
+  case P::diffuse_roughness:
+    return parts.diffuse_roughness;
+  case P::emission:
+    return parts.emission;
+  case P::sheen:
+  case P::sheen_roughness:
+  case P::sheen_tint:
+    return parts.sheen;
+  case P::roughness:
+  case P::ior:
+  case P::specular:
+  case P::specular_tint:
+  case P::anisotropic:
+  case P::anisotropic_rotation:
+  case P::transmission_roughness:
+  case P::coat_roughness:
+  case P::coat_ior:
+    return !planned;
+  default:
+    return true;
+  }
+}
+
+// A lobe for each lane, all with the same code.
+template <class F> struct LaneLobes : LaneRecords<F, ReadyLobe> {
+  using LaneRecords<F, ReadyLobe>::of, LaneRecords<F, ReadyLobe>::same;
+  using LaneRecords<F, ReadyLobe>::number, LaneRecords<F, ReadyLobe>::vector;
+
+  uint32_t inside = 0; // bits of lanes
+
+  // Returns the inputs of lobes without nodes.
+#define LANCER_OF(member)                                                                                                      \
+  [](const ReadyLobe &r) __attribute__((always_inline)) { return r.member; }
+  LANCER_LANE LobeInputs<F> inputs() const {
+    const LobeInputs<float> &first = of[0]->inputs;
+    LobeInputs<F> in;
+    in.kind = first.kind;
+    in.rules = first.rules;
+    in.distribution = first.distribution;
+    in.option = first.option;
+    in.weight = vector(LANCER_OF(inputs.weight));
+    in.color = vector(LANCER_OF(inputs.color));
+    if (of[0]->parts.normal)
+      in.normal = vector(LANCER_OF(inputs.normal));
+    if (of[0]->parts.tangent)
+      in.tangent = vector(LANCER_OF(inputs.tangent));
+    if (first.kind == LobeKind::Lambert)
+      return in;
+    in.roughness = number(LANCER_OF(inputs.roughness));
+    in.ior = number(LANCER_OF(inputs.ior));
+    in.shininess = number(LANCER_OF(inputs.shininess));
+    in.edge = vector(LANCER_OF(inputs.edge));
+    in.anisotropy = number(LANCER_OF(inputs.anisotropy));
+    in.rotation = number(LANCER_OF(inputs.rotation));
+    return in;
+  }
+  // Returns the inputs that all layers of Principled share, without those that principled() reads.
+  LANCER_LANE LobeInputs<F> principled_carrier() const {
+    const LobeInputs<float> &first = of[0]->inputs;
+    const LobeParts &parts = of[0]->parts;
+    LobeInputs<F> in;
+    in.kind = first.kind;
+    in.rules = first.rules;
+    in.weight = vector(LANCER_OF(inputs.weight));
+    if (parts.normal)
+      in.normal = vector(LANCER_OF(inputs.normal));
+    if (parts.tangent)
+      in.tangent = vector(LANCER_OF(inputs.tangent));
+    return in;
+  }
+  LANCER_LANE PrincipledInputs<F> principled() const {
+    const ReadyLobe &first = *of[0];
+    const LobeParts &parts = first.parts;
+    PrincipledInputs<F> in;
+    in.rules = first.principled.rules;
+    in.distribution = first.principled.distribution;
+    in.option = first.principled.option;
+    // The inputs of facets are contained in their plans, where plans are kept.
+    const bool planned = in.rules != Rules::Blender3 && first.has(PrincipledLayer::Gloss) &&
+                         (!parts.coat || first.has(PrincipledLayer::Coat)) && !parts.tangent;
+#define LANCER_READ(kind, name, spoken, given)                                                                                 \
+  if (needed(PrincipledParameter::name, parts, planned))                                                                       \
+    in.name = value<ParameterKind::kind>(LANCER_OF(principled.name));
+    LANCER_PRINCIPLED_PARAMETERS(LANCER_READ)
+#undef LANCER_READ
+    return in;
+  }
+#undef LANCER_OF
+  // get: returns a parameter of that kind.
+  template <ParameterKind kind, class Get> LANCER_LANE ValueOf<F, kind> value(const Get &get) const {
+    if constexpr (std::is_same_v<ValueOf<F, kind>, F>)
+      return number(get);
+    else
+      return vector(get);
+  }
+
+  // The layers with a plan, as add_layers() reads them.
+  LANCER_LANE bool has(PrincipledLayer layer) const { return of[0]->has(layer); }
+  LANCER_LANE Lobe<F> seen(PrincipledLayer layer, F cos_o, const Vec3<F> &color) const {
+    constexpr uint32_t all_inside = (1u << LanesOf<F>::kWidth) - 1u;
+    LanePlans<F> plans;
+    plans.of[0] = of[0]->plan(layer, inside & 1);
+    plans.same = same && (inside == 0 || inside == all_inside);
+    for (int i = 1; i < LanesOf<F>::kWidth && !plans.same; ++i)
+      plans.of[i] = of[same ? 0 : i]->plan(layer, inside >> i & 1);
+    return plans.seen(cos_o, color);
+  }
+};
 
 // Adds the lobes of one described lobe. number: of the described lobe among the material's. values: returns a parameter's value
 // in every lane. hole: lanes where the surface is absent.

@@ -1,7 +1,7 @@
 #include "compile/cutout.h"
 
 #include "nodes/image.h"
-#include "scene/attribute.h"
+#include "scene/surface.h"
 
 #include <algorithm>
 

@@ -3,8 +3,8 @@
 #include "compile/mesh_normals.h"
 #include "compile/scene.h"
 #include "nodes/run.h"
-#include "scene/attribute.h"
 #include "scene/geometry.h"
+#include "scene/surface.h"
 #include "simd/parallel.h"
 
 #include <map>

@@ -2,7 +2,7 @@
 #include "scene/enums.h"
 
 #include "bsdf/lobe.h"
-#include "bsdf/ready_lobe.h"
+#include "bsdf/material_lobes.h"
 #include "scene/description.h"
 
 #include <algorithm>

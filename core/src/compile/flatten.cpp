@@ -1,7 +1,7 @@
 // Meshes of flattening placements: projected to a plane of object space, so that every later step sees a plane surface.
 #include "compile/steps.h"
-#include "scene/attribute.h"
 #include "scene/geometry.h"
+#include "scene/surface.h"
 #include "simd/parallel.h"
 
 #include <array>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "accel/accelerator.h"
-#include "bsdf/ready_lobe.h"
+#include "bsdf/material_lobes.h"
 #include "lights/emitter.h"
 #include "lights/light.h"
 #include "scene/affine.h"

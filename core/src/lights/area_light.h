@@ -2,8 +2,7 @@
 #pragma once
 
 #include "lights/light_lanes.h"
-#include "sampling/spherical_parallelogram.h"
-#include "sampling/spherical_rectangle.h"
+#include "sampling/spherical.h"
 
 namespace lancer {
 

@@ -2,7 +2,7 @@
 // the face is near, by area where it is far.
 #pragma once
 
-#include "lights/emissive_faces.h"
+#include "lights/emission.h"
 
 #include <memory>
 

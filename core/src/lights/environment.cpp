@@ -1,8 +1,8 @@
 #include "lights/environment.h"
 
 #include "nodes/run.h"
-#include "scene/color.h"
 #include "simd/parallel.h"
+#include "simd/vectors.h"
 
 #include <cmath>
 #include <numeric>

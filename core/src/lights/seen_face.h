@@ -2,7 +2,7 @@
 // float, or lanes of floats.
 #pragma once
 
-#include "sampling/spherical_triangle.h"
+#include "sampling/spherical.h"
 #include "sampling/warp.h"
 #include "scene/hit_surface.h"
 

@@ -2,7 +2,7 @@
 // is float or lanes of it.
 #pragma once
 
-#include "simd/rounding.h"
+#include "simd/vectors.h"
 
 namespace lancer {
 

@@ -1,4 +1,5 @@
-// Runs scheduled nodes in order and maps each kind to its formula. Internal linkage, as in lanes.h.
+// Runs scheduled nodes in order, at one hit or in the lanes of a block, and maps each kind to its formula. Internal linkage, as
+// in lanes.h.
 #pragma once
 
 #include "nodes/bump_node.h"
@@ -6,7 +7,10 @@
 #include "nodes/image_nodes.h"
 #include "nodes/texture_nodes.h"
 
+#include <bit>
+
 namespace lancer {
+
 namespace {
 
 // Returns the value of one node at a site.
@@ -83,4 +87,57 @@ void run_nodes(const Program &program, const Schedule &schedule, const Site<F> &
 }
 
 } // namespace
+
+namespace {
+
+// Returns the site of the lanes from first on. Unused lanes copy a used one.
+template <class F> Site<F> site_of(const NodeBlock &block, int first) {
+  constexpr int width = Site<F>::kWidth;
+  using D = DoubleOf<F>;
+  const auto floats = [&](const float(&from)[kBlockLanes]) __attribute__((always_inline)) {
+    return load_lanes<width>(from + first);
+  };
+  const auto doubles = [&](const double(&from)[kBlockLanes]) __attribute__((always_inline)) {
+    return load_lanes<width>(from + first);
+  };
+  Site<F> site;
+  site.scene = block.scene;
+  site.surface = block.surface;
+  const int stand_in = std::countr_zero(block.used >> first);
+  for (int i = 0; i < width; ++i) {
+    const int from = first + ((block.used >> (first + i) & 1) ? i : stand_in);
+    site.primitive[i] = block.surface ? block.primitive[from] : 0;
+    site.instance[i] = block.surface && block.scene.geometry ? &block.scene.geometry->instances[block.instance[from]] : nullptr;
+    site.eye[i] = block.surface ? nullptr : block.eye[from];
+  }
+  site.place();
+  site.p = {doubles(block.p[0]), doubles(block.p[1]), doubles(block.p[2])};
+  site.ns = {floats(block.ns[0]), floats(block.ns[1]), floats(block.ns[2])};
+  site.ng = {floats(block.ng[0]), floats(block.ng[1]), floats(block.ng[2])};
+  site.wo = {floats(block.wo[0]), floats(block.wo[1]), floats(block.wo[2])};
+  site.bary[0] = block.surface ? doubles(block.bary[0]) : D(0.0);
+  site.bary[1] = block.surface ? doubles(block.bary[1]) : D(0.0);
+  site.footprint = block.surface ? floats(block.footprint) : F(0.0f);
+  const uint32_t seen_from_behind = block.surface ? block.backfacing >> first : 0;
+  site.backfacing = by_lane<MaskOf<F>>([&](int i) { return (seen_from_behind >> i & 1) != 0; });
+  site.path.kinds = load_lanes<width>(block.kinds + first);
+  site.path.length = floats(block.length);
+  site.path.depth = floats(block.depth);
+  site.path.diffuse = floats(block.diffuse);
+  site.path.glossy = floats(block.glossy);
+  site.path.transmission = floats(block.transmission);
+  site.path.transparent = floats(block.transparent);
+  site.path.portal = floats(block.portal);
+  return site;
+}
+
+template <class F> void run_block(const Program &program, const Schedule &schedule, const NodeBlock &block, NodeLanes *values) {
+  constexpr int width = Site<F>::kWidth;
+  for (int first = 0; first < kBlockLanes; first += width)
+    if (block.used >> first & ((1u << width) - 1u))
+      run_nodes(program, schedule, site_of<F>(block, first), Values<F>{values->of[0] + first, kBlockLanes});
+}
+
+} // namespace
+
 } // namespace lancer

@@ -2,9 +2,8 @@
 // lanes.h.
 #pragma once
 
-#include "nodes/image_view.h"
-#include "simd/by_lane.h"
-#include "simd/rounding.h"
+#include "nodes/image.h"
+#include "simd/memory.h"
 #include "simd/vectors.h"
 
 namespace lancer {

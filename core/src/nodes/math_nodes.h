@@ -4,7 +4,7 @@
 #include "nodes/site.h"
 #include "sampling/elementary.h"
 #include "scene/enums.h"
-#include "simd/rounding.h"
+#include "simd/vectors.h"
 
 #include <cmath>
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "nodes/site.h"
-#include "scene/attribute.h"
+#include "scene/surface.h"
 
 namespace lancer {
 namespace {

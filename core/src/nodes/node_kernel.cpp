@@ -1,6 +1,6 @@
 // Compiled once per instruction set, with LANCER_ISA as its name. This file must emit no shared (weak) symbol: see
 // bvh_kernel.cpp.
-#include "nodes/block_site.h"
+#include "nodes/dispatch.h"
 #include "simd/kernel_choice.h"
 #include "simd/kernel_lanes.h"
 

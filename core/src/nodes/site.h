@@ -3,8 +3,8 @@
 
 #include "nodes/run.h"
 #include "scene/affine.h"
-#include "scene/attribute.h"
-#include "simd/by_lane.h"
+#include "scene/surface.h"
+#include "simd/memory.h"
 #include "simd/vectors.h"
 
 namespace lancer {

@@ -3,6 +3,8 @@
 #pragma once
 
 #include "compile/scene.h"
+#include "integrator/sample.h"
+#include "render/film.h"
 #include "render/projection.h"
 
 #include <span>
@@ -54,5 +56,19 @@ private:
   std::vector<CameraPoint> points_; // of the current mesh
   std::vector<glm::dvec2> pixels_;  // of the points beyond the near plane
 };
+
+// The uniform background of a picture: pixels that show nothing else share one sample.
+
+struct Background {
+  Coverage coverage;
+  SampleResult sample = SampleResult(); // of every pixel that is not covered
+};
+
+// camera: normalised. Returns a coverage of all pixels if the background varies, if few samples are planned, or if all features
+// are requested.
+Background find_background(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const Film &film);
+
+// Whether all camera rays that miss the scene return the same radiance.
+bool has_even_background(const Scene &scene, const Camera &camera);
 
 } // namespace lancer

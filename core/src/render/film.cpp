@@ -1,7 +1,7 @@
 #include "render/film.h"
 
-#include "scene/color.h"
 #include "simd/memory.h"
+#include "simd/vectors.h"
 
 #include <algorithm>
 #include <bit>

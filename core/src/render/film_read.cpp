@@ -1,7 +1,7 @@
 // Reading a film: passes and estimates of the error of luminances.
 #include "render/film.h"
 
-#include "simd/rounding.h"
+#include "simd/vectors.h"
 
 #include <algorithm>
 #include <limits>

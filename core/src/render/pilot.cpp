@@ -1,8 +1,7 @@
 #include "render/pilot.h"
 
 #include "lancer.h"
-#include "render/pilot_model.h"
-#include "scene/color.h"
+#include "simd/vectors.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,10 +1,9 @@
 #include "render/session.h"
 
 #include "render/picture_error.h"
-#include "scene/color.h"
 #include "scene/error.h"
 #include "scene/fill.h"
-#include "scene/memory.h"
+#include "simd/vectors.h"
 
 #include <tuple>
 

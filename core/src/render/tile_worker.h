@@ -1,7 +1,7 @@
 // The work of one thread: renders tiles in batches of samples and adds them to the film.
 #pragma once
 
-#include "render/background.h"
+#include "render/coverage.h"
 
 #include <functional>
 #include <memory>

@@ -1,5 +1,5 @@
 // The generator matrices of the table, from polynomials and direction numbers; computed at compile time.
-#include "sampling/scramble.h"
+#include "sampling/sobol.h"
 
 namespace lancer::sobol {
 namespace {

@@ -2,7 +2,6 @@
 #include "scene/camera.h"
 
 #include "sampling/elementary.h"
-#include "scene/flat_camera.h"
 
 #include <algorithm>
 #include <cmath>

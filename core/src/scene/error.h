@@ -1,4 +1,4 @@
-// Errors, whose messages name the object and the value.
+// Errors, whose messages name the object and the value; and the check of requests against the machine's memory.
 #pragma once
 
 #include <stdexcept>
@@ -18,5 +18,11 @@ private:
 };
 
 [[noreturn]] inline void bad_argument(const std::string &text) { throw Error(Fault::Argument, text); }
+
+// Returns the machine's memory, in bytes.
+double physical_memory();
+
+// Throws an Error if bytes exceed the memory. what: "image 'Sky': 65536 x 65536 texels".
+void check_memory(const std::string &what, double bytes);
 
 } // namespace lancer

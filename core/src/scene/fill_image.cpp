@@ -2,7 +2,6 @@
 #include "scene/description.h"
 #include "scene/error.h"
 #include "scene/fill.h"
-#include "scene/memory.h"
 
 #include <algorithm>
 #include <cmath>

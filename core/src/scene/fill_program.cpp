@@ -1,8 +1,8 @@
 // Checks and copies nodes, so that evaluation needs no checks.
-#include "scene/attribute.h"
 #include "scene/description.h"
 #include "scene/error.h"
 #include "scene/fill.h"
+#include "scene/surface.h"
 
 #include <algorithm>
 #include <cmath>

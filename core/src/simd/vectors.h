@@ -3,7 +3,9 @@
 
 #include "simd/scalar.h"
 
+#include <algorithm>
 #include <glm/glm.hpp>
+#include <limits>
 #include <type_traits>
 
 namespace lancer {
@@ -85,5 +87,30 @@ template <class D> LANCER_LANE auto narrow(const Vector3<D> &a) {
 
 // Doubles with as many lanes as F.
 template <class F> using Double3Of = Vector3<DoubleOf<F>>;
+
+// Rounding for any width, with the bits of ceil() and trunc(), and the nearest finite float.
+
+template <class F> LANCER_LANE F ceil(const F &a) { return -floor(-a); }
+template <class F> LANCER_LANE F trunc(const F &a) { return copysign(floor(abs(a)), a); }
+
+// Returns false for infinities and NaN.
+template <class F> LANCER_LANE MaskOf<F> is_finite(const F &x) { return x - x == F(0.0f); }
+
+// Returns the nearest finite float: values beyond the range of float are clamped to its ends.
+inline float nearest_float(double value) {
+  constexpr double largest = double(std::numeric_limits<float>::max());
+  return float(std::clamp(value, -largest, largest));
+}
+inline glm::vec2 nearest_float(const glm::dvec2 &v) { return {nearest_float(v.x), nearest_float(v.y)}; }
+inline glm::vec3 nearest_float(const glm::dvec3 &v) { return {nearest_float(v.x), nearest_float(v.y), nearest_float(v.z)}; }
+
+// Scalars of a colour, for choices, weights and alpha.
+
+template <class V> LANCER_LANE NumberOf<V> mean(const V &v) { return (v.x + v.y + v.z) / 3.0f; }
+
+// Luminance of linear light with the primaries of ITU-R BT.709.
+template <class T> T luminance(const glm::vec<3, T> &v) { return T(0.2126f) * v.x + T(0.7152f) * v.y + T(0.0722f) * v.z; }
+
+template <class V> LANCER_LANE NumberOf<V> largest(const V &v) { return max(max(v.x, v.y), v.z); }
 
 } // namespace lancer

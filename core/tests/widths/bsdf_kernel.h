@@ -1,7 +1,7 @@
 // Surfaces in lanes, one copy per instruction set: all values that a surface answers, by name.
 #pragma once
 
-#include "bsdf/ready_lobe.h"
+#include "bsdf/material_lobes.h"
 #include "scene/lobe_inputs.h"
 #include "simd/kernel_choice.h"
 

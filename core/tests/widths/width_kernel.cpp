@@ -4,7 +4,7 @@
 #include "lights/sample_light.h"
 #include "lights/seen_face.h"
 #include "sampling/elementary.h"
-#include "sampling/scramble.h"
+#include "sampling/sobol.h"
 #include "simd/kernel_lanes.h"
 
 namespace lancer {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "lights/light_choice.h"
-#include "sampling/direction_table.h"
+#include "sampling/direction_map.h"
 #include "sampling/pixel_filter.h"
 #include "simd/kernel_choice.h"
 

@@ -1,7 +1,7 @@
 #include "accel/accelerator.h"
 
+#include "accel/bvh/bvh.h"
 #include "accel/bvh/bvh_build.h"
-#include "accel/bvh/bvh_kernel.h"
 #include "accel/placed_scene.h"
 #include "simd/huge_pages.h"
 #include "simd/parallel.h"

@@ -5,7 +5,6 @@
 #include "accel/accelerator.h"
 #include "accel/bounds.h"
 #include "accel/bvh/bvh.h"
-#include "accel/bvh/bvh_kernel.h"
 #include "accel/placed_scene.h"
 #include "simd/huge_pages.h"
 

@@ -2,7 +2,7 @@
 // because no operation is contracted and boxes only cull. This file must emit no shared (weak) symbol: the linker would keep
 // one translation unit's copy for all instruction sets. So it uses plain structs and forced inlining, and every inline function
 // of another header must be inlined.
-#include "accel/bvh/bvh_kernel.h"
+#include "accel/bvh/bvh.h"
 
 #include "accel/bvh/packet.h"
 #include "accel/bvh/visit.h"

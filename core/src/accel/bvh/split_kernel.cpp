@@ -1,6 +1,6 @@
 // Bins and moves boxes. Compiled once per instruction set, with LANCER_ISA as its name; all copies give the same trees. This
 // file must emit no shared (weak) symbol: see bvh_kernel.cpp.
-#include "accel/bvh/bvh_kernel.h"
+#include "accel/bvh/bvh.h"
 
 #include "simd/kernel_choice.h"
 #include "simd/kernel_lanes.h"

@@ -1,8 +1,7 @@
 #include "integrator/aov/first_surface.h"
 
 #include "sampling/elementary.h"
-#include "scene/color.h"
-#include "simd/rounding.h"
+#include "simd/vectors.h"
 
 #include <algorithm>
 #include <cmath>

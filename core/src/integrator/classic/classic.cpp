@@ -1,8 +1,8 @@
 #include "integrator/classic/classic.h"
 
 #include "compile/mesh_normals.h"
-#include "scene/color.h"
 #include "scene/hit_surface.h"
+#include "simd/vectors.h"
 
 #include <algorithm>
 

@@ -3,7 +3,7 @@
 
 #include "compile/mesh_normals.h"
 #include "integrator/aov/first_surface.h"
-#include "scene/color.h"
+#include "simd/vectors.h"
 
 namespace lancer {
 

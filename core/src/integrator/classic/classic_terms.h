@@ -5,8 +5,8 @@
 #include "bsdf/bsdf.h"
 #include "lights/light_lanes.h"
 #include "sampling/elementary.h"
-#include "scene/color.h"
 #include "scene/enums.h"
+#include "simd/vectors.h"
 
 #include <limits>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "integrator/sample.h"
-#include "scene/color.h"
+#include "simd/vectors.h"
 
 #include <algorithm>
 #include <cmath>

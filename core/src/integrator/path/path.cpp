@@ -1,7 +1,7 @@
 #include "integrator/path/path.h"
 #include "scene/enums.h"
 
-#include "scene/color.h"
+#include "simd/vectors.h"
 
 #include <algorithm>
 

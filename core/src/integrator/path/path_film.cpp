@@ -1,6 +1,6 @@
 #include "integrator/path/path_film.h"
 
-#include "scene/color.h"
+#include "simd/vectors.h"
 
 #include <algorithm>
 

@@ -3,7 +3,7 @@
 #include "integrator/stages/camera.h"
 
 #include "sampling/pixel_filter.h"
-#include "scene/flat_camera.h"
+#include "scene/camera.h"
 #include "simd/kernel_lanes.h"
 
 namespace lancer {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bsdf/bsdf.h"
-#include "scene/color.h"
+#include "simd/vectors.h"
 
 namespace lancer {
 

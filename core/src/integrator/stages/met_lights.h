@@ -5,7 +5,6 @@
 #pragma once
 
 #include "integrator/stages/light.h"
-#include "integrator/stages/sky.h"
 
 namespace lancer {
 

@@ -1,7 +1,7 @@
 #include "integrator/stages/scatter.h"
 #include "scene/enums.h"
 
-#include "scene/color.h"
+#include "simd/vectors.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 
 #include "bsdf/bsdf.h"
 #include "compile/scene.h"
-#include "nodes/material_nodes.h"
+#include "nodes/run.h"
 
 namespace lancer {
 

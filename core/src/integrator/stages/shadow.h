@@ -5,7 +5,7 @@
 #pragma once
 
 #include "integrator/sample.h"
-#include "integrator/stages/crossings.h"
+#include "integrator/stages/hit.h"
 #include "integrator/stages/light.h"
 #include "integrator/stages/light_passes.h"
 #include "integrator/stages/shader.h"

@@ -2,7 +2,7 @@
 
 #include "compile/scene.h"
 #include "integrator/stages/light_passes.h"
-#include "scene/color.h"
+#include "simd/vectors.h"
 
 #include <algorithm>
 #include <bit>

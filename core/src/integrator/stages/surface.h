@@ -9,7 +9,7 @@
 
 #include "integrator/sample.h"
 #include "integrator/stages/lobe_means.h"
-#include "nodes/material_nodes.h"
+#include "nodes/run.h"
 #include "simd/block.h"
 
 namespace lancer {

@@ -2,7 +2,6 @@
 #include "scene/enums.h"
 
 #include "nodes/image.h"
-#include "scene/attribute.h"
 #include "scene/image.h"
 #include "scene/surface.h"
 

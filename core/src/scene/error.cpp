@@ -1,5 +1,3 @@
-#include "scene/memory.h"
-
 #include "scene/error.h"
 
 #include <cstdint>
