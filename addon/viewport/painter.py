@@ -41,7 +41,7 @@ class Wanted(NamedTuple):
     denoising: bool
 
 
-class Picture(NamedTuple):
+class ViewPicture(NamedTuple):
     image: np.ndarray  # (height, width, 4), premultiplied, scene-linear, row 0 at the bottom
     wanted: Wanted
     size: int  # side of its pixels in pixels of the region
@@ -51,7 +51,7 @@ class Picture(NamedTuple):
 
 
 class Painter:
-    """picture: the newest Picture; failure: why the wanted view cannot be rendered; messages: lines of the library."""
+    """picture: the newest ViewPicture; failure: why the wanted view cannot be rendered; messages: lines of the library."""
 
     def __init__(self):
         self.picture = None
@@ -197,7 +197,7 @@ class Painter:
                     with shown.spending():
                         clean = (yield from self._clean(session)) if denoising else None
                         image = session.read() if clean is None else clean
-                    self.picture = Picture(image, wanted, size, schedule.samples, schedule.error, clean is not None)
+                    self.picture = ViewPicture(image, wanted, size, schedule.samples, schedule.error, clean is not None)
                     schedule.longest = max(_SHOW_EVERY, shown.interval)
                     self._brief = False
                 while self.waits:

@@ -46,7 +46,7 @@ class Viewport:
         self._failure = self._blindness = ""  # why the export of the scene, or of the camera, failed
         self._messages = Messages()  # the entry in last_messages
         self._library = None  # the painter's messages that are already in _messages
-        self._drawn = None  # (Picture, failure) on the screen
+        self._drawn = None  # (ViewPicture, failure) on the screen
         self.painter = Painter()
         weakref.finalize(self, self.painter.close)
         _open.add(self)

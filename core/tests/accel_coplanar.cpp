@@ -244,7 +244,7 @@ TEST_P(Coplanar, NothingStopsWhatLeaves) {
         // Upwards, where no scene has anything else, some nearly along the plane.
         d -= glm::dot(d, up) * up;
         d = glm::normalize(d) + std::exp2(random.uniform(-18.0, 1.0)) * up;
-        on.push_back(leave(surface, d * scale, std::numeric_limits<double>::infinity()));
+        on.push_back(ray_from(surface, d * scale, std::numeric_limits<double>::infinity()));
       }
       std::vector<Hit> next(on.size());
       std::vector<uint8_t> occluded(on.size());

@@ -125,7 +125,7 @@ TEST(Reintersect, RidgesOfAnySize) {
         continue;
       ++left;
       const Surface surface = surface_at(geometry, {}, ray, hit);
-      const Ray next = leave(surface, away, std::numeric_limits<double>::infinity());
+      const Ray next = ray_from(surface, away, std::numeric_limits<double>::infinity());
       const Hit again = closest(*accelerator, next);
       ASSERT_FALSE(again.valid()) << scene << ": " << again.primitive << " at " << again.t << " of " << size_here;
       // A shadow ray to a point above is unoccluded, too.

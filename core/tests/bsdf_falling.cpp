@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
-#include "bsdf/microfacet_terms.h"
+#include "bsdf/microfacet_eval.h"
 #include "bsdf_catalogue.h"
 #include "statistics.h"
 

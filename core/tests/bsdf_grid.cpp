@@ -4,7 +4,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-#include "bsdf/microfacet_terms.h"
+#include "bsdf/microfacet_eval.h"
 #include "bsdf_catalogue.h"
 #include "bsdf_facets.h"
 #include "statistics.h"

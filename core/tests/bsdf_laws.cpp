@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "bsdf/albedo_tables.h"
-#include "bsdf/microfacet_terms.h"
+#include "bsdf/microfacet_eval.h"
 #include "bsdf_catalogue.h"
 #include "bsdf_facets.h"
 #include "statistics.h"

@@ -1,5 +1,6 @@
 // Every formula gives the bits of one lane in the lanes of each instruction set. All not-a-numbers count as equal: processor
 // and compiler choose which of two operands an operation hands on.
+#include "light_choosers.h"
 #include "widths/each_kernel.h"
 #include "widths/width_kernel.h"
 
@@ -265,7 +266,7 @@ TEST(Widths, ChoicesAreThoseOfOneLane) {
       for (int lane = 0; lane < WidthInputs::kCount; ++lane) {
         const LightQuery query({in.p[0][lane], in.p[1][lane], in.p[2][lane]}, {in.n[0][lane], in.n[1][lane], in.n[2][lane]},
                                false);
-        chosen += tree.choose(query, in.choice[lane]).probability > 0.0;
+        chosen += choose(tree, query, in.choice[lane]).probability > 0.0;
       }
     }
   }

@@ -1,4 +1,5 @@
 // Several lights at once: two techniques share each of them, whichever light a sample chooses.
+#include "light_choosers.h"
 #include "picture_lab.h"
 
 #include "lights/light_set.h"
@@ -46,9 +47,9 @@ TEST(LightsChoice, KnowsItsOwnProbability) {
   const LightQuery query(glm::dvec3(2.0, 1.0, 0.0), glm::vec3(0.0f, 0.0f, 1.0f), false);
   bool lamp = false, sun = false;
   for (int i = 0; i < 64; ++i) {
-    LightChoice choice = set.binary_tree().choose(query, (i + 0.5) / 64.0);
+    LightChoice choice = choose(set.binary_tree(), query, (i + 0.5) / 64.0);
     if (choice.number == set.size()) {
-      const LightChoice of_many = set.wide_tree().choose(query, choice.u);
+      const LightChoice of_many = choose(set.wide_tree(), query, choice.u);
       choice = {of_many.number, choice.probability * of_many.probability, of_many.u};
     }
     ASSERT_GT(choice.probability, 0.0);

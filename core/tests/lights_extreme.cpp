@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "bsdf_domain.h"
+#include "light_choosers.h"
 #include "lights/light_tree.h"
 #include "lights/round_light.h"
 #include "statistics.h"
@@ -171,7 +172,7 @@ template <class Choose> void expect_fair(const Choose &lights, int count, const 
       continue;
     Random random(9);
     for (int k = 0; k < 2000; ++k) {
-      const LightChoice choice = lights.choose(query, double(random.uniform()) + 0x1p-24 * double(random.uniform()));
+      const LightChoice choice = choose(lights, query, double(random.uniform()) + 0x1p-24 * double(random.uniform()));
       ASSERT_GT(choice.probability, 0.0);
       // The same products and quotients in another order.
       ASSERT_NEAR(lights.probability(query, choice.number) / choice.probability, 1.0, 1e-9);

@@ -1,5 +1,6 @@
 // Light trees for few and many lights: probabilities equal the frequencies of choices, they sum to one, and no contributing
 // light is left out.
+#include "light_choosers.h"
 #include "lights/light_tree.h"
 #include "statistics.h"
 
@@ -135,7 +136,7 @@ TYPED_TEST(LightTrees, TheProbabilityOfAChoiceIsThatOfItsLight) {
     for (const TypeParam *each : {&tree, &faces})
       for (int i = 0; i < 500; ++i) {
         const LightQuery query = any_query(random);
-        const LightChoice choice = each->choose(query, double(random.uniform()));
+        const LightChoice choice = choose(*each, query, double(random.uniform()));
         ASSERT_GE(choice.u, 0.0);
         ASSERT_LT(choice.u, 1.0);
         // The same factors in the other order: a rounding for each level, of which there are some dozens.
@@ -160,7 +161,7 @@ TYPED_TEST(LightTrees, ChoicesFollowTheirProbabilities) {
       // The remainder is no choice, unless it is rounding.
       expected[count + 1] = kChoices - sum > kChoices * kSumError * std::sqrt(double(count)) ? kChoices - sum : 0.0;
       for (int i = 0; i < kChoices; ++i) {
-        const LightChoice choice = tree.choose(query, (i + double(random.uniform())) / kChoices);
+        const LightChoice choice = choose(tree, query, (i + double(random.uniform())) / kChoices);
         ++observed[choice.probability > 0.0 ? choice.number : count + 1];
       }
       // Stratified numbers, one in each slice, vary less than the law assumes: all the more is a high statistic an error.
@@ -175,7 +176,7 @@ TYPED_TEST(LightTrees, WhatIsLeftOfTheNumberIsUniform) {
   const LightQuery query({0, 0, 0}, {0, 0, 1}, true);
   std::vector<double> counts(20), expected(20);
   for (int i = 0; i < 100000; ++i) {
-    const LightChoice choice = tree.choose(query, double(random.uniform()) + 0x1p-24 * double(random.uniform()));
+    const LightChoice choice = choose(tree, query, double(random.uniform()) + 0x1p-24 * double(random.uniform()));
     if (!(choice.probability > 0.0))
       continue;
     ++counts[size_t(20.0 * choice.u)];
@@ -246,7 +247,7 @@ TYPED_TEST(LightTrees, OneLightIsCertain) {
     LightQuery query = any_query(random);
     query.transmits = true;
     EXPECT_EQ(tree.probability(query, 0), 1.0);
-    EXPECT_EQ(tree.choose(query, 0.9).probability, 1.0);
+    EXPECT_EQ(choose(tree, query, 0.9).probability, 1.0);
   }
 }
 
@@ -288,7 +289,7 @@ TYPED_TEST(LightTrees, StandsWhatIsDegenerate) {
     lights.push_back(light({i ? double(i) : 4e38, 0.0, 1.0}, 1.0));
   for (const bool transmits : {false, true})
     EXPECT_GT(tree_of<TypeParam>(lights).probability(LightQuery(glm::dvec3(0.0), {0, 0, 1}, transmits), 3), 0.01);
-  EXPECT_EQ(tree_of<TypeParam>({}).choose(any_query(random), 0.5).probability, 0.0);
+  EXPECT_EQ(choose(tree_of<TypeParam>({}), any_query(random), 0.5).probability, 0.0);
 }
 
 } // namespace

@@ -105,7 +105,7 @@ TEST(Principled, KeptLayersAreThoseMadeInPlace) {
     for (const LayerRow &row : kLayers)
       for (const bool side : {false, true})
         if (row.facets && (row.layer != PrincipledLayer::Gloss || plastic_ior(in, f0) != 1.0f))
-          ready.plans[side][static_cast<int>(row.layer)] = keep(plan_layer(row.layer, lobe, in, side));
+          ready.plans[side][static_cast<int>(row.layer)] = cached(plan_layer(row.layer, lobe, in, side));
     const LaneLobes<float> kept{{&ready}, inside};
     const glm::vec3 wo = direction(random.uniform()), wi = direction(random.uniform(), 6.28 * random.uniform()), n(0, 0, 1);
     Bsdf<float> planned, in_place;

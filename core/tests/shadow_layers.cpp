@@ -72,7 +72,7 @@ glm::vec3 from_hit_to_hit(const Scene &scene, Shader &shader, Question question,
             : material.transmittance.value;
     if (light == glm::vec3(0.0f))
       return light;
-    Ray next = leave(surface, ray.d, ray.tmax);
+    Ray next = ray_from(surface, ray.d, ray.tmax);
     if (std::isfinite(next.tmax))
       next.d = ray.o + ray.d * ray.tmax - next.o;
     next.kinds = ray.kinds;

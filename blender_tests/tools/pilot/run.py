@@ -1,4 +1,4 @@
-"""`make pilot`: fits the weights of the pilot's cost model, and prints them beside those of core/src/render/pilot_model.h.
+"""`make pilot`: fits the weights of the pilot's cost model, and prints them beside those of core/src/render/pilot.h.
 
 Each scene is rendered with several fixed splits, on one thread, by turns. The figures are the processor's seconds and the
 counts of rays and vertices after the first sample. Then each scene is rendered with the splits that the pilot finds, and with
@@ -22,13 +22,13 @@ from tools.harness.turns import by_turns
 
 from .fit import deviation, fit
 
-MODEL = ROOT / "core" / "src" / "render" / "pilot_model.h"
+MODEL = ROOT / "core" / "src" / "render" / "pilot.h"
 WEIGHTS = ("camera_ray", "ray", "vertex")
 # Ways of splitting: lights, paths. With them, the counts of rays and of vertices vary independently.
 SPLITS = ((1, 1), (4, 1), (1, 4), (4, 4))
 WIDTH, HEIGHT = 192, 128
 _SECONDS = 0.3
-# The pictures for the time of the search, as in pilot_model.h.
+# The pictures for the time of the search, as in pilot.h.
 _PLANNED = 64
 
 

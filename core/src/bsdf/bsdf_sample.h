@@ -1,7 +1,7 @@
 // Sampling of a BSDF: selects a lobe, samples a direction from it, and weights the direction by all lobes.
 #pragma once
 
-#include "bsdf/bsdf_terms.h"
+#include "bsdf/bsdf_eval.h"
 
 namespace lancer {
 

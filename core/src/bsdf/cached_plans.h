@@ -39,7 +39,7 @@ struct CachedPlan {
   // the Fresnel curve.
   float single[tables::kFine] = {}, mix[tables::kCoarse] = {};
 };
-inline std::shared_ptr<const CachedPlan> keep(const MicrofacetPlan<float> &plan) {
+inline std::shared_ptr<const CachedPlan> cached(const MicrofacetPlan<float> &plan) {
   const AlbedoLookup<float> tables;
   const auto kept = std::make_shared<CachedPlan>();
   kept->plan = plan;

@@ -7,7 +7,7 @@
 
 #include "bsdf/albedo_tables.h"
 #include "bsdf/fresnel.h"
-#include "bsdf/microfacet_terms.h"
+#include "bsdf/microfacet_eval.h"
 
 namespace lancer {
 

@@ -52,7 +52,7 @@ void cache_layers(const LobeDescription &lobe, ReadyLobe &ready) {
     if (row.layer == PrincipledLayer::Gloss && plastic_ior(ready.principled, f0) == 1.0f)
       continue;
     for (const bool inside : {false, true})
-      ready.plans[inside][static_cast<int>(row.layer)] = keep(plan_layer(row.layer, ready.inputs, ready.principled, inside));
+      ready.plans[inside][static_cast<int>(row.layer)] = cached(plan_layer(row.layer, ready.inputs, ready.principled, inside));
   }
 }
 
@@ -64,7 +64,7 @@ void cache_facets(ReadyLobe &ready) {
   if (inputs.rules == Rules::Blender3 || (!glass && (inputs.anisotropy != 0.0f || !(conductor || glossy))))
     return;
   for (const bool inside : {false, true})
-    ready.plans[inside][static_cast<int>(PrincipledLayer::Gloss)] = keep(plan_facets(inputs, inside));
+    ready.plans[inside][static_cast<int>(PrincipledLayer::Gloss)] = cached(plan_facets(inputs, inside));
 }
 
 } // namespace

@@ -22,13 +22,6 @@ LightQueryLanes<float> width_one(const LightQuery &query) {
 
 } // namespace
 
-LightChoice BinaryLightTree::choose(const LightQuery &query, double u) const {
-  if (empty())
-    return {};
-  const LightChoiceLanes<float> choice = choose_light(width_one(query), nodes(), u, true);
-  return {choice.number, choice.probability, choice.u};
-}
-
 double BinaryLightTree::probability(const LightQuery &query, uint32_t number) const {
   const uint32_t place = place_of(number);
   return place == kNone ? 0.0 : choice_probability(width_one(query), nodes(), place);
@@ -45,14 +38,6 @@ LightWalk LightTree::walk(const LightQuery &query, double u) {
   walk.transmits = query.transmits;
   walk.u = u;
   return walk;
-}
-
-LightChoice LightTree::choose(const LightQuery &query, double u) const {
-  if (empty())
-    return {};
-  LightWalk one = walk(query, u);
-  kernel_->choose(tree(), &one, 1);
-  return {one.number, one.probability, one.u};
 }
 
 double LightTree::probability(const LightQuery &query, uint32_t number) const {

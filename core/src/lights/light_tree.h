@@ -24,13 +24,11 @@ public:
   bool empty() const { return lights_.empty(); }
   size_t size() const { return lights_.size(); }
 
-  // u in [0, 1): one random number serves all levels of the tree.
-  LightChoice choose(const LightQuery &query, double u) const;
-  // The nodes, for kernels.
+  // The nodes, for kernels: choose_light() chooses.
   LightNodes nodes() const { return {nodes_.data(), lights_.data(), root_, node_of_.data(), parent_.data()}; }
   // Returns kNone for a light that is never chosen.
   uint32_t place_of(uint32_t number) const { return number < place_of_.size() ? place_of_[number] : kNone; }
-  // Returns the probability with which choose() returns a light.
+  // Returns the probability with which choose_light() returns a light.
   double probability(const LightQuery &query, uint32_t number) const;
 
   size_t bytes() const {
@@ -63,9 +61,7 @@ public:
   // Bounds of the whole tree; energy in the user's units.
   const LightBounds &bounds() const { return bounds_; }
 
-  // u in [0, 1): one random number serves all levels of the tree.
-  LightChoice choose(const LightQuery &query, double u) const;
-  // The walks that choose lights for several points together.
+  // The walks that choose lights for several points together. u in [0, 1): one random number serves all levels of the tree.
   static LightWalk walk(const LightQuery &query, double u);
   void choose(std::span<LightWalk> walks) const { kernel_->choose(tree(), walks.data(), uint32_t(walks.size())); }
   // Returns the probability with which choose() returns a light.

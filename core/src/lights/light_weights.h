@@ -4,6 +4,7 @@
 
 #include "lights/light_importance.h"
 #include "lights/tree_kernel.h"
+#include "simd/double_register.h"
 #include "simd/kernel_lanes.h"
 
 namespace lancer {
@@ -49,23 +50,12 @@ LANCER_LANE F weigh(const LightBranch &branch, const LightAim *aim, const LightW
   return select(kept, max(most, F(kLeastImportance)), zero);
 }
 
-// Returns b shifted right by a number of lanes, the last lanes of a moved in before it.
-template <int By> LANCER_LANE DoubleVector shifted(DoubleVector a, DoubleVector b) {
-#if defined(__AVX512F__)
-  return __builtin_shufflevector(a, b, 8 - By, 9 - By, 10 - By, 11 - By, 12 - By, 13 - By, 14 - By, 15 - By);
-#elif defined(__AVX__)
-  return __builtin_shufflevector(a, b, 4 - By, 5 - By, 6 - By, 7 - By);
-#else
-  return __builtin_shufflevector(a, b, 2 - By, 3 - By);
-#endif
-}
-
 // Adds to each child's number the number of the child that stands By places before it.
 template <int By> LANCER_LANE void add_before(DoubleVector (&of)[kParts]) {
   const DoubleVector none{};
   for (int i = kParts - 1; i >= 0; --i) {
     if constexpr (By < kHalf)
-      of[i] = of[i] + shifted<By>(i > 0 ? of[i - 1] : none, of[i]);
+      of[i] = of[i] + shifted_in<By>(i > 0 ? of[i - 1] : none, of[i]);
     else if (i >= By / kHalf)
       of[i] = of[i] + of[i - By / kHalf];
   }

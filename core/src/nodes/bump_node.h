@@ -138,11 +138,11 @@ template <class F> Vector3<F> flat_normal_before(const Inputs<F> &in, const Site
   return select(flat, select(dot(n, site.ng) < F(0.0f), -n, n), normal);
 }
 
-// Saves values of nodes before the height's nodes overwrite them. Code between keep() and bring_back() must not throw: a
+// Saves values of nodes before the height's nodes overwrite them. Code between save() and bring_back() must not throw: a
 // destructor would need exception tables, which are shared symbols and must not occur in kernels.
 template <class F> class Kept {
 public:
-  void keep(const Schedule &schedule, const Values<F> &values) {
+  void save(const Schedule &schedule, const Values<F> &values) {
     if (schedule.size() > kFew)
       kept_ = static_cast<Value<F> *>(allocate_values(schedule.size() * sizeof(Value<F>)));
     for (size_t i = 0; i < schedule.size(); ++i)
@@ -180,7 +180,7 @@ template <class F> Value<F> bump_node(const Program &program, const Inputs<F> &i
   // Compute the height here and at both offsets, and restore the values.
   const Schedule &schedule = program.heights[in.node.heights];
   Kept<F> kept;
-  kept.keep(schedule, in.values);
+  kept.save(schedule, in.values);
   const auto height = [&](const D3 &offset) {
     run_nodes(program, schedule, height_site(site, steps, offset), in.values);
     return D(widen(in.scalar(2)));

@@ -161,7 +161,7 @@ void probe_light_pdf(const Scene &scene, uint32_t light, uint32_t count, const d
       const Surface surface = surface_at(scene.geometry, scene.slots, ray, hit);
       if (surface.instance == emitter.instance())
         sum += emitter.pdf(scene.geometry, p, surface);
-      ray = leave(surface, w, infinity);
+      ray = ray_from(surface, w, infinity);
       hit = Hit{};
     }
     pdf[i] = float(sum);

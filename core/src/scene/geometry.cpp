@@ -30,7 +30,7 @@ void Instance::place(const Affine &map) {
 namespace {
 
 // Moves the kept entries to the front: width entries per face.
-template <class Entry> void keep(std::vector<Entry> &entries, size_t width, const std::vector<uint32_t> &kept) {
+template <class Entry> void retain(std::vector<Entry> &entries, size_t width, const std::vector<uint32_t> &kept) {
   if (entries.empty())
     return;
   for (size_t i = 0; i < kept.size(); ++i)
@@ -56,17 +56,17 @@ void keep_faces(Mesh &mesh, const std::vector<uint32_t> &kept) {
     mesh.face_of.resize(mesh.triangles.size());
     std::iota(mesh.face_of.begin(), mesh.face_of.end(), 0u);
   }
-  keep(mesh.face_of, 1, kept);
-  keep(mesh.triangles, 1, kept);
+  retain(mesh.face_of, 1, kept);
+  retain(mesh.triangles, 1, kept);
   if (mesh.normal_domain == NormalDomain::Corner)
-    keep(mesh.normals, 3, kept);
-  keep(mesh.uvs, 3, kept);
-  keep(mesh.colors, 3, kept);
-  keep(mesh.material_slots, 1, kept);
-  keep(mesh.polygons, 1, kept);
+    retain(mesh.normals, 3, kept);
+  retain(mesh.uvs, 3, kept);
+  retain(mesh.colors, 3, kept);
+  retain(mesh.material_slots, 1, kept);
+  retain(mesh.polygons, 1, kept);
   for (MeshAttribute &attribute : mesh.attributes)
     if (attribute.domain != Domain::Vertex)
-      keep(attribute.values, attribute.channels * (attribute.domain == Domain::Corner ? 3u : 1u), kept);
+      retain(attribute.values, attribute.channels * (attribute.domain == Domain::Corner ? 3u : 1u), kept);
 }
 
 } // namespace lancer

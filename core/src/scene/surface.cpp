@@ -103,7 +103,7 @@ SurfaceAttributes attributes_at(const Geometry &geometry, const Surface &surface
   return attributes;
 }
 
-Ray leave(const Surface &surface, const glm::dvec3 &d, double tmax) {
+Ray ray_from(const Surface &surface, const glm::dvec3 &d, double tmax) {
   Ray ray;
   ray.o = origin_towards<double>(surface.p, surface.offset, glm::dvec3(surface.ng), d);
   ray.d = d;

@@ -35,7 +35,7 @@ glm::vec3 interpolated_normal(const Mesh &mesh, Shading shading, uint32_t triang
 
 // Returns a ray that leaves the surface towards d (need not be unit): it starts on the side of d and does not hit its own
 // primitive.
-Ray leave(const Surface &surface, const glm::dvec3 &d, double tmax);
+Ray ray_from(const Surface &surface, const glm::dvec3 &d, double tmax);
 
 // Returns the material number of a primitive of an instance; kNone without slots.
 uint32_t material_of(const Geometry &geometry, const std::vector<uint32_t> &slots, uint32_t instance, uint32_t primitive);

@@ -168,5 +168,16 @@ LANCER_LANE void transpose(Double<4> &a, Double<4> &b, Double<4> &c, Double<4> &
 #endif
 }
 
+// Returns b shifted by a number of lanes towards the last one, the last lanes of a moved in before it.
+template <int By, class Vector> LANCER_LANE Vector shifted_in(Vector a, Vector b) {
+  constexpr int W = sizeof(Vector) / sizeof(double);
+  if constexpr (W == 8)
+    return __builtin_shufflevector(a, b, 8 - By, 9 - By, 10 - By, 11 - By, 12 - By, 13 - By, 14 - By, 15 - By);
+  else if constexpr (W == 4)
+    return __builtin_shufflevector(a, b, 4 - By, 5 - By, 6 - By, 7 - By);
+  else
+    return __builtin_shufflevector(a, b, 2 - By, 3 - By);
+}
+
 } // namespace
 } // namespace lancer

@@ -16,7 +16,7 @@ constexpr int kPairs = 4 * kTogether;
 template <int W> struct alignas(64) BlockHits {
   double t[W], wb[W], wc[W], det[W];
 
-  LANCER_LANE void keep(const TriangleHit<Double<W>> &hit) {
+  LANCER_LANE void record(const TriangleHit<Double<W>> &hit) {
     store(t, hit.t);
     store(wb, hit.wb);
     store(wc, hit.wc);
@@ -40,7 +40,7 @@ LANCER_LANE uint32_t intersect_block(const TriangleBlock &block, const MeshRay &
   uint32_t met = intersect_triangle(corner, ray, hit);
   if (met == 0)
     return 0;
-  hits.keep(hit);
+  hits.record(hit);
   for (uint32_t rest = met; rest != 0; rest &= rest - 1) {
     const int i = __builtin_ctz(rest);
     const double t = hits.t[i];
@@ -67,7 +67,7 @@ LANCER_LANE uint32_t intersect_together(const Double<kPairs> (&corner)[3][3], co
   const uint32_t met = intersect_triangle(corner, ray, hit);
   if (met == 0)
     return 0;
-  hits.keep(hit);
+  hits.record(hit);
   return met & bits((of(e.tmin) < hit.t) & (hit.t < of(e.tmax)) & (hit.t <= of(limit)));
 }
 

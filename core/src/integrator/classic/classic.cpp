@@ -69,7 +69,7 @@ bool ClassicIntegrator::run_part(std::span<const SampleAddress> addresses, std::
     next_rays_.clear();
     shade(results);
     for (size_t i = 0; i < rays_.size(); ++i)
-      leave(i, results[branches_[i].slot], trace);
+      gather(i, results[branches_[i].slot], trace);
     counts_.shadow +=
         shadows_.trace([&](const WaitingLight &waiting, const glm::vec3 &light) { shadow_light_.add(waiting.slot, light); });
     shadow_light_.sort();
@@ -119,13 +119,13 @@ void ClassicIntegrator::miss(const Branch &branch, const glm::dvec3 &eye, const 
 }
 
 // Adds the light of a ray's vertex and queues the rays that leave it.
-void ClassicIntegrator::leave(size_t number, SampleResult &result, std::vector<PathVertex> *trace) {
+void ClassicIntegrator::gather(size_t number, SampleResult &result, std::vector<PathVertex> *trace) {
   Branch &branch = branches_[number];
   const Ray &ray = rays_[number];
   if (!hits_[number].valid())
     return miss(branch, ray.o, glm::vec3(glm::normalize(ray.d)), result);
   if (trace)
-    keep_vertex(number, result, *trace);
+    trace_vertex(number, result, *trace);
   const Vertex &vertex = lit_[number];
   if (vertex.nothing)
     return;
@@ -140,7 +140,7 @@ void ClassicIntegrator::leave(size_t number, SampleResult &result, std::vector<P
 }
 
 // Position comes from the hit, colour from the shaded vertex.
-void ClassicIntegrator::keep_vertex(size_t number, const SampleResult &result, std::vector<PathVertex> &trace) const {
+void ClassicIntegrator::trace_vertex(size_t number, const SampleResult &result, std::vector<PathVertex> &trace) const {
   const Hit &hit = hits_[number];
   const Surface met = surface_at(scene_.geometry, scene_.slots, rays_[number], hit);
   const glm::vec3 ns = is_flat(scene_.geometry.instances[hit.instance]) ? surface_at_center(scene_, hit).ns : met.ns;
@@ -183,7 +183,7 @@ void ClassicIntegrator::branch_out(size_t number, SampleResult &result) {
     behind.passed += hit.t;
     behind.weight *= vertex.transmittance;
     ++behind.layers;
-    push(behind, lancer::leave(surface_at(scene_.geometry, scene_.slots, ray, hit), ray.d, ray.tmax - hit.t));
+    push(behind, ray_from(surface_at(scene_.geometry, scene_.slots, ray, hit), ray.d, ray.tmax - hit.t));
   }
   // Beyond the depth limit a ray is black and need not be traced.
   if (branch.depth >= settings_.max_bounces)

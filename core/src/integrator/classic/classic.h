@@ -108,7 +108,7 @@ private:
   void shade_block(std::span<SampleResult> results);
   void cut_holes(std::span<SampleResult> results);
   void record(std::span<SampleResult> results);
-  void keep(uint32_t lane);
+  void store_vertex(uint32_t lane);
   void sample(uint32_t number, const Doubles (&p)[3], const Floats (&ng)[3]);
   void illuminate(uint32_t number);
   glm::vec3 own_light(uint32_t number, uint32_t lane, float share) const;
@@ -116,8 +116,8 @@ private:
   void light_corners();
   void move_to_corner(uint32_t corner);
   void send_shadow(uint32_t number, uint32_t lane, const glm::vec3 &light);
-  void leave(size_t number, SampleResult &result, std::vector<PathVertex> *trace);
-  void keep_vertex(size_t number, const SampleResult &result, std::vector<PathVertex> &trace) const;
+  void gather(size_t number, SampleResult &result, std::vector<PathVertex> *trace);
+  void trace_vertex(size_t number, const SampleResult &result, std::vector<PathVertex> &trace) const;
   void miss(const Branch &branch, const glm::dvec3 &eye, const glm::vec3 &direction, SampleResult &result);
   void add(const Branch &branch, const glm::vec3 &light, bool environment, SampleResult &result);
   void branch_out(size_t number, SampleResult &result);

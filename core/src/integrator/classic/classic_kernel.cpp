@@ -2,7 +2,7 @@
 // bvh_kernel.cpp.
 #include "integrator/classic/classic_kernel.h"
 
-#include "integrator/classic/classic_terms.h"
+#include "integrator/classic/illumination.h"
 #include "integrator/stages/lobe_lanes.h"
 #include "integrator/stages/terminator.h"
 #include "scene/hit_surface.h"

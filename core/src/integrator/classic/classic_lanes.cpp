@@ -74,7 +74,7 @@ void ClassicIntegrator::shade_block(std::span<SampleResult> results) {
     record(results);
   kernel_.branch(surfaces_.lobes(), branched_);
   for (uint32_t lane = 0; lane < surfaces_.count(); ++lane)
-    keep(lane);
+    store_vertex(lane);
   if (corners_)
     light_corners();
   else
@@ -117,7 +117,7 @@ void ClassicIntegrator::record(std::span<SampleResult> results) {
   }
 }
 
-void ClassicIntegrator::keep(uint32_t lane) {
+void ClassicIntegrator::store_vertex(uint32_t lane) {
   Vertex &vertex = lit_[number_[lane]];
   const Hit &hit = surfaces_.hit(lane);
   vertex.mirrors = branched_.mirrors >> lane & 1;

@@ -265,7 +265,7 @@ void PathIntegrator::pass_straight(uint32_t lane) {
   next_.paths.push_back(path);
   next_.from.push_back(queue_.from[number_[lane]]);
   next_.from.back().passed += surface_.distance(lane);
-  next_.rays.push_back(leave(surface_.surface(lane), ray.d, ray.tmax - hit.t));
+  next_.rays.push_back(ray_from(surface_.surface(lane), ray.d, ray.tmax - hit.t));
   next_.rays.back().kinds = path.kinds;
 }
 

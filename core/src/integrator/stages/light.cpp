@@ -136,7 +136,7 @@ void LightStage::sample(uint32_t light, uint32_t lanes, const Doubles (&p)[3], c
   for (uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
     const uint32_t lane = uint32_t(std::countr_zero(rest));
     if (faces_.used >> lane & 1)
-      keep_face(lane, [](uint32_t) { return LightPath<float>{}; });
+      look_at_face(lane, [](uint32_t) { return LightPath<float>{}; });
     else
       sample_shape(lane, p, numbers, {});
   }

@@ -137,7 +137,7 @@ public:
     sample_faces(surfaces.p);
     each_lane(emitters_, [&](uint32_t lane) {
       if (faces_.used >> lane & 1)
-        keep_face(lane, path);
+        look_at_face(lane, path);
       else
         sample_shape(lane, surfaces.p, numbers, path(lane));
     });
@@ -165,7 +165,7 @@ private:
   void choose_faces(const SurfaceBlock &surfaces, const LobeBlock &lobes);
   void sample_faces(const Doubles (&p)[3]);
   // Stores the sample of a face with the light that its point emits.
-  template <class PathOf> void keep_face(uint32_t lane, PathOf &&path) {
+  template <class PathOf> void look_at_face(uint32_t lane, PathOf &&path) {
     const uint32_t number = material_of(scene_.geometry, scene_.slots, emitter_of(lane).instance(), face_[lane]);
     if (number == kNone)
       return;

@@ -50,7 +50,7 @@ void MetLights::meet_lamp(size_t first, uint32_t lanes, uint32_t light) {
   each_lane(lanes, [&](uint32_t lane) {
     const LightHit hit{get(block_.radiance, lane), block_.pdf[lane], block_.distance[lane]};
     if (is_on_segment(first + lane, hit))
-      keep(first + lane, light, hit, block_.chosen[lane]);
+      add(first + lane, light, hit, block_.chosen[lane]);
   });
 }
 
@@ -58,7 +58,7 @@ void MetLights::meet_alone(size_t ray, uint32_t light) {
   const glm::dvec3 &d = rays_[ray].d;
   const LightHit hit = meet(scene_.lights.lights()[light], from_[ray].p, d / glm::length(d));
   if (is_on_segment(ray, hit))
-    keep(ray, light, hit, from_[ray].pdf > 0.0 ? scene_.lights.probability(from_[ray].query(), light) : 1.0);
+    add(ray, light, hit, from_[ray].pdf > 0.0 ? scene_.lights.probability(from_[ray].query(), light) : 1.0);
 }
 
 // Whether a ray hits a light before the ray ends.
@@ -72,7 +72,7 @@ bool MetLights::is_on_segment(size_t ray, const LightHit &hit) const {
 }
 
 // chosen: the probability with which sampling chooses the light.
-void MetLights::keep(size_t ray, uint32_t light, const LightHit &hit, double chosen) {
+void MetLights::add(size_t ray, uint32_t light, const LightHit &hit, double chosen) {
   const double pdf = from_[ray].pdf;
   met_.push_back({ray, light, hit.radiance, pdf > 0.0 ? mis_weight(pdf, hit.pdf * chosen) : 1.0f});
 }

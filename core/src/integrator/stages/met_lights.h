@@ -47,7 +47,7 @@ private:
   void meet_lamp(size_t first, uint32_t lanes, uint32_t light);
   void meet_alone(size_t ray, uint32_t light);
   bool is_on_segment(size_t ray, const LightHit &hit) const;
-  void keep(size_t ray, uint32_t light, const LightHit &hit, double chosen);
+  void add(size_t ray, uint32_t light, const LightHit &hit, double chosen);
   double end_of(size_t ray) const {
     return from_[ray].passed + std::min(hits_[ray].t, rays_[ray].tmax) * glm::length(rays_[ray].d);
   }

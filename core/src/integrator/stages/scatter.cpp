@@ -35,10 +35,11 @@ uint32_t ScatterStage::kind(uint32_t lane) const {
 }
 
 void ScatterStage::write_ray(uint32_t lane, const Hit &hit, uint32_t kinds, Ray &ray) const {
-  leave(hit, get(next_.origin, lane), glm::dvec3(get(next_.wi, lane)), std::numeric_limits<double>::infinity(), kinds, ray);
+  lancer::write_ray(hit, get(next_.origin, lane), glm::dvec3(get(next_.wi, lane)), std::numeric_limits<double>::infinity(),
+                    kinds, ray);
 }
 
-void leave(const Hit &hit, const glm::dvec3 &o, const glm::dvec3 &d, double tmax, uint32_t kinds, Ray &ray) {
+void write_ray(const Hit &hit, const glm::dvec3 &o, const glm::dvec3 &d, double tmax, uint32_t kinds, Ray &ray) {
   ray.o = o;
   ray.d = d;
   ray.tmax = tmax;

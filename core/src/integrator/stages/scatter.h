@@ -58,6 +58,6 @@ private:
 };
 
 // Fills a ray that leaves the surface of a hit from an origin off the surface. The ray is written in place.
-void leave(const Hit &hit, const glm::dvec3 &o, const glm::dvec3 &d, double tmax, uint32_t kinds, Ray &ray);
+void write_ray(const Hit &hit, const glm::dvec3 &o, const glm::dvec3 &d, double tmax, uint32_t kinds, Ray &ray);
 
 } // namespace lancer

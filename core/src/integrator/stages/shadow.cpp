@@ -22,9 +22,9 @@ void write_shadow_ray(const Scene &scene, const SurfaceStage &surfaces, uint32_t
   }
   const glm::dvec3 o = get(lit.origin, lane);
   if (far)
-    leave(surfaces.hit(lane), o, get(samples.wi, lane), std::numeric_limits<double>::infinity(), RayKind::Shadow, ray);
+    write_ray(surfaces.hit(lane), o, get(samples.wi, lane), std::numeric_limits<double>::infinity(), RayKind::Shadow, ray);
   else
-    leave(surfaces.hit(lane), o, get(samples.target, lane) - o, 1.0, RayKind::Shadow, ray);
+    write_ray(surfaces.hit(lane), o, get(samples.target, lane) - o, 1.0, RayKind::Shadow, ray);
 }
 
 uint64_t ShadowStage::trace_solid() {

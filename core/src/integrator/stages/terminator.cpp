@@ -68,7 +68,7 @@ Ray shadow_ray(const Geometry &geometry, const Surface &surface, const glm::vec3
                const LightSample &sample) {
   const bool far = std::isinf(sample.distance);
   const glm::vec3 wi(sample.wi);
-  Ray ray = leave(surface, sample.wi, far ? std::numeric_limits<double>::infinity() : 1.0);
+  Ray ray = ray_from(surface, sample.wi, far ? std::numeric_limits<double>::infinity() : 1.0);
   const glm::dvec3 lift = terminator_offset(geometry, surface, ns, ng, wi);
   if (lift != glm::dvec3(0.0)) {
     // A ray from below the triangle's own plane may hit the triangle; one from above cannot.

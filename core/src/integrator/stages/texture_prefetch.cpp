@@ -21,7 +21,7 @@ TexturePrefetch::TexturePrefetch(const Scene &scene) : scene_(scene) {
   }
 }
 
-TexturePrefetch::Picture TexturePrefetch::find(const Scene &scene, const Material &material) {
+TexturePrefetch::Source TexturePrefetch::find(const Scene &scene, const Material &material) {
   const std::vector<Node> &nodes = material.program.nodes;
   for (const Node &node : nodes) {
     if (node.kind != NodeKind::Image || node.option != ImageProjection::Flat || node.image_count != 1 ||
@@ -42,7 +42,7 @@ ComingLookup TexturePrefetch::coming(const Hit &hit) const {
   const uint32_t material = material_of(scene_.geometry, scene_.slots, hit.instance, hit.primitive);
   if (material == kNone || !pictures_[material].image)
     return {};
-  const Picture &picture = pictures_[material];
+  const Source &picture = pictures_[material];
   glm::vec2 uv[3];
   if (!corner_uvs(scene_.geometry.meshes[instance.mesh], picture.uv_map, hit.primitive, uv))
     return {};

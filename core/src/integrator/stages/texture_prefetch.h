@@ -29,17 +29,17 @@ public:
   ComingLookup coming(const Hit &hit) const;
 
 private:
-  struct Picture {
+  struct Source {
     const Image *image = nullptr;
     uint32_t uv_map = 0; // number of its name
     Extension extension = Extension::Repeat;
   };
 
-  static Picture find(const Scene &scene, const Material &material);
+  static Source find(const Scene &scene, const Material &material);
   void ask(const Hit &hit) const;
 
   const Scene &scene_;
-  std::vector<Picture> pictures_; // by material
+  std::vector<Source> pictures_; // by material
   bool any_ = false;
 };
 

@@ -5,7 +5,7 @@
 #include "bsdf/bsdf.h"
 #include "bsdf/classic_lobes.h"
 #include "bsdf/matte.h"
-#include "bsdf/microfacet_terms.h"
+#include "bsdf/microfacet_eval.h"
 #include "bsdf/normals.h"
 #include "bsdf/sheen.h"
 #include "simd/vectors.h"
