@@ -147,7 +147,8 @@ LANCER_LANE void enter_world_packet(const PlacementFrame &world, Entering &e) {
 }
 
 // Limits of a heuristic: rays with directions in a narrow cone that pass close to each other at the scene's centre visit the
-// same boxes. A wrong choice costs only time.
+// same boxes. A wrong choice costs only time: with 0.9 and 0.999 in place of 0.99, six scenes of `make bench` take 1.001
+// and 1.007 times as long.
 constexpr double kPacketCosine2 = 0.99;
 constexpr double kPacketWidth = 0.25; // in the scene's frame
 

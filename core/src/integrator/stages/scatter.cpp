@@ -11,7 +11,9 @@ namespace lancer {
 
 namespace {
 
-// Roulette starts after the bounces that carry most of the light.
+// Roulette starts after this number of scatterings. With 0, 1, 3, 4 in its place, variance times rays is 1.12, 1.01, 1.06, 1.07
+// times as large: the geometric mean over seven scenes of `make bench`, from lancer_session_error after 48 samples of two
+// seeds.
 constexpr uint32_t kRouletteAfter = 2;
 
 } // namespace
