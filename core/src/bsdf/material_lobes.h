@@ -166,7 +166,7 @@ template <class F> struct LaneLobes : LaneRecords<F, ReadyLobe> {
 };
 
 // Adds the lobes of one described lobe. number: of the described lobe among the material's. values: returns a parameter's value
-// in every lane. hole: lanes where the surface is absent.
+// in every lane. hole: lanes whose lobes a holdout hides.
 template <class F, class Values>
 void add_described(const Material *const *materials, size_t number, const Values &values, MaskOf<F> hole, Bsdf<F> &bsdf) {
   const LobeDescription &described = materials[0]->lobes[number];

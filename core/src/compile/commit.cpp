@@ -1,4 +1,5 @@
-// From a description to a scene: normalise, find features, make lights, build the accelerator.
+// From a description to a scene: find features, displace, flatten, normalise, make lobes and cutouts ready, make lights, build
+// the accelerator.
 #include "accel/coplanar/coplanar_faces.h"
 #include "compile/features.h"
 #include "compile/mesh_normals.h"
@@ -112,7 +113,7 @@ std::shared_ptr<const Scene> commit(Description description, AcceleratorKind kin
     displace(description, context);
   flatten(description, context);
   scene->normalisation = normalise(world_bounds(description, context));
-  // Place everything in the normalised world.
+  // Make materials ready.
   scene->geometry = std::move(description.geometry);
   scene->slots = std::move(description.slots);
   scene->materials = std::move(description.materials);
@@ -129,6 +130,7 @@ std::shared_ptr<const Scene> commit(Description description, AcceleratorKind kin
     return instance.kind == ShapeKind::Mesh && !instance.holdout && scene->cutouts[material].may_end;
   });
   scene->world = std::move(description.world);
+  // Place everything in the normalised world.
   for (Instance &instance : scene->geometry.instances) {
     instance.place(scene->normalisation.to_normalised(instance.to_world));
     if (instance.kind != ShapeKind::Mesh)

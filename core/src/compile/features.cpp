@@ -1,9 +1,9 @@
 #include "compile/features.h"
-#include "scene/enums.h"
 
 #include "bsdf/lobe.h"
 #include "bsdf/material_lobes.h"
 #include "scene/description.h"
+#include "scene/enums.h"
 
 #include <algorithm>
 #include <iterator>

@@ -30,11 +30,11 @@ enum LightPass : uint32_t {
 // passes.
 struct SampleResult {
   glm::vec3 radiance{0.0f};
-  float alpha = 0.0f;
+  float alpha = 0.0f; // 1 where the camera stage has made a ray, less what holdouts and a transparent film take
   glm::vec3 normal{0.0f};
   glm::vec3 albedo{0.0f};
   glm::vec3 uv{0.0f};
-  float mist = 0.0f;
+  float mist = 0.0f; // the share of light that mist leaves
   // Parts of radiance, set only where settings request them; colours are their divisors.
   glm::vec3 light[kLightPasses];
   glm::vec3 denoising_normal{0.0f}; // camera space

@@ -42,8 +42,6 @@ struct LightBounds {
   double cost() const;
 };
 
-// A light in the tree: the numbers that its importance at a point needs, and no others.
-
 // A shading point that chooses a light: its position, its shading normal, and whether its surface transmits light.
 struct LightQuery {
   glm::dvec3 p{0.0};

@@ -15,7 +15,8 @@ template <class D> LANCER_LANE auto mis_weight(D pdf, D other) {
 
 template <class U> LANCER_LANE auto is_kind(U kind, LightKind which) { return equal(kind, U(static_cast<uint32_t>(which))); }
 
-// Samples the lights of the requested lanes; the other lanes stay as they are. The radiance of a sample may be black.
+// Samples the lights of the requested lanes, seen from p in the normalised world; the other lanes stay as they are. pdf per
+// solid angle, 0: no sample; the radiance of a sample may be black. See LightSample.
 template <template <class> class L, class F>
 LANCER_LANE void sample_light(const L<F> &light, const Double3Of<F> &p, F u, F v, MaskOf<F> asked,
                               LightSampleLanes<F> &sample) {

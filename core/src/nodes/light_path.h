@@ -14,7 +14,7 @@ constexpr uint32_t kRaySingular = 64, kRayReflected = 128;
 template <class F> struct LightPath {
   WordOf<F> kinds = WordOf<F>(0u); // RayKind, kRaySingular, kRayReflected; 0 for a sampled light
   F length = F(0.0f);              // of the ray, in the user's units
-  // Scattering events before the ray: all, and by kind; surfaces passed straight through.
+  // Scattering events before the ray: all, and by kind; surfaces passed straight through; portals, of which there are none.
   F depth = F(0.0f), diffuse = F(0.0f), glossy = F(0.0f), transmission = F(0.0f), transparent = F(0.0f), portal = F(0.0f);
 };
 

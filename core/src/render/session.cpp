@@ -127,7 +127,7 @@ void Session::start() {
   started_ = true;
   active_ = pool_.size();
   start_ = std::chrono::steady_clock::now();
-  // If the last range ended before the first sample, the background and the splits have to be found again.
+  // Before the first sample, find the background and the splits, also after a range that ended early.
   pilot_.reset();
   background_found_.reset();
   if (film_.sample_range().second == 0) {

@@ -4,7 +4,7 @@ namespace lancer {
 
 namespace {
 
-// A batch of paths that fills the queues without leaving the second-level cache.
+// Paths of a batch: enough to fill the queues without leaving the second-level cache.
 constexpr uint32_t kBatch = 1024;
 // If some pixels of a tile are not covered, a batch takes more samples of the covered pixels. Its results, including those of
 // uncovered pixels, fill at most this many batches.
@@ -43,7 +43,7 @@ void TileWorker::render(Film &film, Film::Tile &tile, uint32_t end, const Backgr
   }
   const uint32_t per_batch = std::max(1u, std::min(kBatch / covered, kMostBatches * kBatch / pixels));
   while (tile.count < end && !settings_.cancelled()) {
-    // Render the next samples of all of them.
+    // Render the next samples of all covered pixels.
     const uint32_t samples = std::min(per_batch, end - tile.count);
     render_batch(tile, samples);
     if (settings_.cancelled())

@@ -1,4 +1,4 @@
-// The geometry as the user described it: meshes and their instances.
+// Meshes and their instances: in world units in a Description, in the normalised world in a Scene.
 #pragma once
 
 #include "scene/affine.h"

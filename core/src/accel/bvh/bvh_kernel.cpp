@@ -1,7 +1,8 @@
-// Traversal of the wide BVH. Compiled once per instruction set, with LANCER_ISA as its name. All copies give the same bits,
-// because no operation is contracted and boxes only cull. This file must emit no shared (weak) symbol: the linker would keep
-// one translation unit's copy for all instruction sets. So it uses plain structs and forced inlining, and every inline function
-// of another header must be inlined.
+// Traversal of the wide BVH: coherent rays walk the tree as a packet (packet.h); the others go on alone, kSlots at a time, by
+// the kind of the entry on top of their stack (visit.h). Compiled once per instruction set, with LANCER_ISA as its name. All
+// copies give the same bits, because no operation is contracted and boxes only cull. This file must emit no shared (weak)
+// symbol: the linker would keep one translation unit's copy for all instruction sets. So it uses plain structs and forced
+// inlining, and every inline function of another header must be inlined.
 #include "accel/bvh/bvh.h"
 
 #include "accel/bvh/packet.h"

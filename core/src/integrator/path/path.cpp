@@ -1,6 +1,6 @@
 #include "integrator/path/path.h"
-#include "scene/enums.h"
 
+#include "scene/enums.h"
 #include "simd/vectors.h"
 
 #include <algorithm>
@@ -59,7 +59,7 @@ void PathIntegrator::find_hits() {
 
 void PathIntegrator::shade() {
   next_.clear();
-  // Add lamps and the sky.
+  // Add lamps and the sky; sort the hits into queues.
   add_lamps();
   film_.count_occluded(queue_.paths, queue_.rays, hits_, occlusion_);
   missed_.clear();
@@ -113,6 +113,7 @@ void PathIntegrator::add_sky() {
   }
 }
 
+// Adds a hit to the block, unless it ends its path and adds nothing to the picture, which alone is requested.
 void PathIntegrator::put_in_lane(size_t number, const Material &material) {
   const Path &path = queue_.paths[number];
   const Hit &hit = hits_[number];
@@ -191,7 +192,7 @@ void PathIntegrator::split() {
   }
 }
 
-// Samples a light in every lane whose path continues, or several lights in a lane that splits.
+// Samples a light in every lane that may scatter its light, or several lights in a lane that splits.
 void PathIntegrator::light() {
   uint32_t asking = ((1u << surface_.count()) - 1u) & ~ends_;
   const uint32_t count = splitting_ ? settings_.splits.lights : 1;
@@ -232,7 +233,7 @@ void PathIntegrator::go_on() {
     occlusion_.look(occlusion_asked_, surface_, scatter_.next(), numbers_.numbers);
     each_lane(going, [&](uint32_t lane) {
       const bool passes = branch == 0 && path_of(lane).chooses_to_pass(surface_.lobes().pass[lane]);
-      // A path that passes straight on has no further branches: its first one looks around in the leader's place.
+      // A path that passes straight on has no further branches: branch 0 sends the occlusion rays instead of the leader.
       if (occlusion_asked_ >> lane & 1 && (passes || branch == leader_[lane]))
         look_around(lane);
       if (passes)
@@ -245,6 +246,7 @@ void PathIntegrator::go_on() {
   }
 }
 
+// Sends the rays of a lane for ambient occlusion.
 void PathIntegrator::look_around(uint32_t lane) {
   const Path &path = path_of(lane);
   film_.add_open(path, occlusion_.send(lane, surface_, scatter_.next(), path.slot, path.beta * recorded_opacity(surface_, lane),

@@ -99,10 +99,10 @@ private:
   Floats beta_[3];
   Doubles lights_, paths_; // sampled at the vertex
   // Bits of its lanes.
-  uint32_t ends_ = 0;      // the vertex scatters no light
-  uint32_t nothing_ = 0;   // a hole in the picture
-  uint32_t splitting_ = 0; // the sample splits
-  uint32_t occlusion_asked_ = 0;
+  uint32_t ends_ = 0;            // the vertex scatters no light
+  uint32_t nothing_ = 0;         // a hole in the picture
+  uint32_t splitting_ = 0;       // the sample splits
+  uint32_t occlusion_asked_ = 0; // the pass of ambient occlusion asks
 };
 
 } // namespace lancer

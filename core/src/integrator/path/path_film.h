@@ -35,7 +35,8 @@ public:
   // Returns the place where a path gathers its light, counted from its sample's first place.
   uint32_t place_of(const Path &path) const { return path.split ? path.branch : places() - 1; }
 
-  // Adds light that a path transports to the camera.
+  // Adds light that a path transports to the camera: as seen directly while the path is in the camera's view, then as direct or
+  // indirect. environment: the light is the world's, which a transparent film hides.
   void add(const Path &path, const glm::vec3 &radiance, bool environment);
   // Returns the record of a lane's light sample that waits for its shadow ray. share: LitBlock::share.
   WaitingLight waiting(const Path &path, const Floats (&share)[2][3], uint32_t lane) const;
@@ -46,8 +47,8 @@ public:
 
   // Whether no pass but the picture is requested: records stay unused.
   bool only_combined() const { return only_combined_; }
-  // Fills the passes of a block's surfaces that the camera sees. number: of each lane's path; ends, nothing: bits of lanes
-  // whose path ends, and where a hole has left nothing. Returns the lanes that ask for ambient occlusion.
+  // Fills the passes of a block's surfaces that the camera sees. number: of each lane's path; ends, nothing: bits of lanes that
+  // scatter no light, and where a hole has left nothing. Returns the lanes that ask for ambient occlusion.
   uint32_t record(SurfaceStage &surfaces, std::span<const Path> paths, const size_t (&number)[kBlockLanes], uint32_t ends,
                   uint32_t nothing);
   // Counts the absent surfaces that ray `number` of the stage has passed before its hit, as if its path had passed them one by

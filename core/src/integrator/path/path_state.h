@@ -17,15 +17,15 @@ struct Path {
   bool split = false;   // the sample has split
   uint32_t branch = 0;  // number among its sample's paths
   uint32_t sharers = 1; // number of paths that share its weight
-  bool leads = true;    // the path is the leader: chosen uniformly among the branches, it alone records passes
+  bool leads = true; // the leader, chosen uniformly among the branches: it alone records the first surface, guides, occlusion
   uint32_t scatterings = 0;
   uint32_t kinds = RayKind::Camera; // of the ray
   uint32_t layers = 0;              // transparent surfaces passed since the last scattering
   uint32_t passed_through = 0;      // transparent surfaces passed in all
   PathStory story;                  // for nodes that read it
-  bool in_view = true;              // the path has passed no surface but clear glass, so it still shows the camera's view
+  bool in_view = true;              // since the camera, the path has passed straight on or through clear glass alone
   bool last = false;                // the path ends at the next surface
-  double length = 0.0;              // of the whole path
+  double length = 0.0;              // of the whole path, normalised units
 
   // Returns the number of layers that the path may still pass straight through: up to limit on the whole path, and at least one
   // unless the path is at its last surface. After these layers, the path ends at the next surface and gets only the light that
@@ -70,7 +70,7 @@ struct Path {
   // Whether the ray shows a light or an environment that is hidden from some kinds of rays. Diffuse transmission is of two
   // kinds.
   bool shows_light(uint32_t hidden_from) const { return !((kinds | (story.kinds & RayKind::Diffuse)) & hidden_from); }
-  // Returns the Light Path values for nodes. length: of its ray, in scene units, from the ray's start.
+  // Returns the Light Path values for nodes. ray_length: of the ray, from its start, in the user's units.
   LightPath<float> light_path(double ray_length) const { return story.told(float(ray_length), scatterings, passed_through); }
   // Returns the Light Path values for a light sample at a vertex, which counts as a scattering, as in Cycles.
   LightPath<float> asking_path() const {

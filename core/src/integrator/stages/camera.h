@@ -1,7 +1,7 @@
 // From addresses of samples to camera rays, a block at a time.
 //
 // In: pixels of the region and numbers of samples, from an integrator. Out: rays in the normalised world, for the hit stage,
-// and the sampler of each sample.
+// and the sampler of each sample. Callers: all integrators.
 #pragma once
 
 #include "integrator/sample.h"
@@ -19,7 +19,8 @@ struct alignas(64) FilmBlock {
   uint32_t key = 0; // hash of the seed
 };
 
-// Sampler::pixel() of each sample, and its ray; d of any length.
+// Sampler::pixel() of each sample, and its ray; the component of d along the axis is 1, or d is unit for panoramas: t is the
+// depth.
 struct alignas(64) CameraBlock {
   Words pixel;
   Doubles o[3], d[3];
@@ -36,11 +37,12 @@ class CameraStage {
 public:
   CameraStage(const Camera &camera, const IntegratorSettings &settings);
 
-  // Whether rays go through the middle of the pixel and of the lens: in a picture of one sample by a recursive ray tracer.
+  // Whether rays go through the middle of the pixel and of the lens: in a picture of one sample by CLASSIC or NORMALS.
   bool middle() const { return middle_; }
 
-  // Begins every sample: clears its result and calls begin(slot, sampler) for a ray to fill in. A sample without a direction
-  // gets no call: outside a panorama's picture it is black and opaque, as in Cycles.
+  // Begins every sample: clears its result and calls begin(slot, sampler), which returns the ray to fill. with_light: parts of
+  // the light are requested. A sample without a direction gets no call: outside a panorama's picture it is black and opaque, as
+  // in Cycles.
   template <class Begin>
   void start(std::span<const SampleAddress> addresses, bool with_light, std::span<SampleResult> results, Begin &&begin) {
     for (uint32_t first = 0; first < addresses.size(); first += kBlockLanes) {

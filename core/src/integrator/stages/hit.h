@@ -2,7 +2,8 @@
 //
 // In: rays, and the number of surfaces that each may still pass, from an integrator. Out: hits, for the shading queues, and the
 // absent surfaces that rays have passed before their hits. At an absent surface, shading would continue the path straight
-// through with weight 1 and sample no light.
+// through with weight 1 and sample no light. Rays are in the normalised world. Caller: PATH; accel/accelerator.h finds the
+// hits.
 #pragma once
 
 #include "integrator/sample.h"
@@ -73,7 +74,7 @@ public:
   std::span<const Crossing> absent(size_t ray) { return crossings_.in_order(ray); }
 
 private:
-  // Whether a surface is present at a hit.
+  // Whether a hit ends the search: its surface is present, or its ray may pass no more. Otherwise stores the crossing.
   bool counts(size_t ray, const Hit &hit) override;
 
   const Scene &scene_;

@@ -1,8 +1,9 @@
 // Light samples of vertices, in lanes: the choice of a light, a point of the light, and the light that arrives from there
 // unless a surface occludes it.
 //
-// In: surfaces, their lobes and numbers, from an integrator. Out: LightSamples, for the integrator; LitBlock, for the shadow
-// stage. Lengths are in the normalised world, densities per solid angle.
+// In: surfaces, their lobes and numbers, from an integrator. Out: LightSamples and LitBlock, for the integrator and the shadow
+// stage. Lengths are in the normalised world, densities per solid angle. Callers: PATH, CLASSIC, which samples each light in
+// turn, and the probes.
 #pragma once
 
 #include "compile/scene.h"
@@ -50,13 +51,14 @@ private:
   std::vector<NodeLanes> values_;
 };
 
-// As LightChoice.
+// As LightChoice; rest: its u. The number LightSet::size() stands for the tree of many lights, in which the choice goes on.
 struct alignas(64) LightChoices {
   Words number;
   Doubles probability, rest;
 };
 
-// As LightSample; pdf includes the probability of the choice, 0: no sample.
+// As LightSample; target and distance only of lights that are not far. pdf includes the probability of the choice, 0: no
+// sample.
 struct alignas(64) LightSamples {
   Doubles wi[3], target[3], distance, pdf;
   Floats radiance[3];
@@ -77,8 +79,8 @@ struct alignas(64) FaceBlock {
   Floats ng[3];
 };
 
-// The light of the samples without occlusion, for the bits lit. Shadow rays begin at their origin, on the side of their
-// direction.
+// The light of the samples without occlusion, for the bits lit. origin: start of the shadow ray, off the surface on the side of
+// wi.
 struct alignas(64) LitBlock {
   Floats contribution[3];
   Floats share[2][3]; // diffuse and glossy share, where shares are wanted
@@ -95,7 +97,8 @@ struct LitVertices {
   const Doubles &count;
 };
 
-// Segments of rays that hit a light, as LightHit, and the probability with which the last scattering chose the light.
+// Segments of rays that hit a light, as LightHit, and the probability with which a light sample at the last scattering chooses
+// the light.
 struct alignas(64) MetBlock {
   Doubles pdf, distance, chosen;
   Floats radiance[3];

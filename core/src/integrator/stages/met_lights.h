@@ -1,20 +1,21 @@
 // Light that rays run into: lamps on their way, surfaces that emit, the environment behind all surfaces.
 //
 // In: rays, their hits, and the last scatterings of their paths, from the integrator. Out: radiance towards the ray's origin,
-// and the weight of BSDF sampling against light sampling, which may have found the same light.
+// and the weight of BSDF sampling against light sampling, which may have found the same light. Lengths are in the normalised
+// world, densities per solid angle. Caller: PATH.
 #pragma once
 
 #include "integrator/stages/light.h"
 
 namespace lancer {
 
-// The last scattering of a path, from which light samples compete with the path's ray.
+// The last scattering of a path, from which light samples compete with the path's ray. Of a camera ray: its origin; n is 0.
 struct Scattering {
   glm::dvec3 p{0.0};
   glm::vec3 n{0.0f};      // shading normal
   bool transmits = false; // light may pass the surface
   double pdf = 0.0;       // of the BSDF sample that gave the ray; 0 after the camera or a single direction
-  double passed = 0.0;    // distance to the ray's origin, through transparent surfaces
+  double passed = 0.0;    // normalised distance to the ray's origin, through transparent surfaces
 
   LightQuery query() const { return LightQuery(p, n, transmits); }
 };

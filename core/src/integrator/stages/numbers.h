@@ -1,7 +1,7 @@
 // The random numbers of a sample by name, and those of vertices in lanes, also where samples split.
 //
 // In: the address of each lane's sample and the dimension of its vertex, from an integrator. Out: VertexNumbers, in [0, 1), for
-// the stages light, scatter and occlusion.
+// the stages light, scatter and occlusion, and for roulette. Callers: PATH; CLASSIC sets numbers of its own.
 #pragma once
 
 #include "sampling/sobol.h"
@@ -23,6 +23,7 @@ enum VertexDimension : uint32_t {
 };
 // Layers of opacity have their own dimensions, far behind the others.
 inline constexpr uint32_t kDimensionOpacity = 1u << 16;
+// One more than the largest number of surfaces that a path may pass straight through.
 inline constexpr uint32_t kMaxCrossings = 1025;
 
 // Sets of a vertex's numbers, as bits: those of a light sample, and those of the next ray.

@@ -1,7 +1,7 @@
 // Ambient occlusion of vertices: the share of the hemisphere from which nothing near hides the surface.
 //
 // In: lobes, their means, next directions and numbers, from the integrator. Out: rays, for the shadow stage; open shares, for
-// the film. Distances are in the normalised world.
+// the film. Distances are in the normalised world. Caller: PATH.
 #pragma once
 
 #include "integrator/stages/scatter.h"

@@ -1,6 +1,6 @@
 #include "integrator/stages/scatter.h"
-#include "scene/enums.h"
 
+#include "scene/enums.h"
 #include "simd/vectors.h"
 
 #include <algorithm>

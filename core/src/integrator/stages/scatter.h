@@ -1,7 +1,8 @@
 // The next directions of paths, in lanes, sampled from the lobes of surfaces.
 //
 // In: surfaces, their lobes and numbers, from an integrator. Out: ScatterBlock, for the occlusion stage and the integrator.
-// Densities are per solid angle; the block is for paths that are scattered, not for those that pass straight through.
+// Densities are per solid angle; the block is for paths that are scattered, not for those that pass straight through. Caller:
+// PATH.
 #pragma once
 
 #include "integrator/stages/numbers.h"

@@ -1,4 +1,7 @@
-// Queues of paths by the shading code of the surfaces that they have hit.
+// Queues of paths by the shading code of the surfaces that they have hit, so that neighbouring vertices run the same code.
+//
+// In: numbers of paths and their hits, from an integrator. Out: the paths of each class of materials, for the surface stage.
+// Callers: all integrators.
 #pragma once
 
 #include "compile/scene.h"

@@ -1,8 +1,8 @@
 #include "integrator/stages/shadow.h"
-#include "scene/enums.h"
 
 #include "integrator/stages/scatter.h"
 #include "integrator/stages/terminator.h"
+#include "scene/enums.h"
 
 #include <limits>
 

@@ -1,7 +1,7 @@
 // Shadow rays, queued and traced as a batch: they determine the part of each light contribution that arrives.
 //
 // In: contributions and their rays, from integrators and the occlusion stage. Out: the contributions times the transmittance of
-// the surfaces on the way, in the order of pushing.
+// the surfaces on the way, in the order of pushing. Rays are in the normalised world. Callers: PATH, CLASSIC.
 #pragma once
 
 #include "integrator/sample.h"

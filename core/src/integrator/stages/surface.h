@@ -1,10 +1,11 @@
 // From hits to surfaces and their lobes, in lanes.
 //
 // In: rays, their hits, materials of one class, and the views from which nodes see them, from an integrator. Out: the surface
-// and its lobes, for the stages light, scatter and occlusion; emission, transmittance, holes and means of lobes, for the
-// integrator. Lengths are in the normalised world. The steps of a block:
+// and its lobes, for the stages light, scatter, occlusion and shadow; emission, transmittance, holes and means of lobes, for
+// the integrator. Callers: all integrators. Lengths are in the normalised world. The steps of a block:
 //
-//   add() each hit, then find(), ask_nodes(), cut_holes(), build_lobes(), describe() where passes need it; clear() at the end.
+//   add() each hit, then find(), ask_nodes() (nodes/run.h), cut_holes(), build_lobes() (bsdf/material_lobes.h), describe()
+//   where passes need it; clear() at the end.
 #pragma once
 
 #include "integrator/sample.h"
@@ -26,7 +27,8 @@ struct alignas(64) HitBlock {
   uint32_t on_plane = 0, on_cylinder = 0, on_cone = 0;
 };
 
-// As Surface, with both normals outwards; wo unit, length: of d, terminator: Instance::terminator.
+// As Surface, with both normals outwards. wo: unit, towards the viewer; length: of d; terminator: Instance::terminator, 0 on
+// exact surfaces.
 struct alignas(64) SurfaceBlock {
   Doubles p[3], offset, length;
   Floats ng[3], ns[3], wo[3];
@@ -39,14 +41,14 @@ struct alignas(64) MaterialBlock {
   Floats transmittance[3], through;                // through: its mean
   const float (*values)[4][kBlockLanes] = nullptr; // of nodes, four floats for every lane
   uint32_t holes = 0;                              // bits of lanes: lobes are hidden by a hole
-  uint32_t ends = 0;                               // bits of lanes: the path ends here
+  uint32_t ends = 0;                               // bits of lanes: the surface scatters no light
   bool shares = false;                             // diffuse and glossy shares of light are wanted
 };
 
 // The lobes, with normals and emission on the viewer's side.
 struct alignas(64) LobeBlock {
   Floats ns[3], ng[3];
-  Floats emission[3];           // of layers
+  Floats emission[3];           // of layered lobes; SurfaceStage::emission() adds that of the material
   Floats pass;                  // share of paths that pass straight through; the others are scattered
   std::byte *storage = nullptr; // of the lobes of all lanes: see lobe_lanes.h
   // Each of the following is one bit per lane.
@@ -85,7 +87,7 @@ public:
   uint32_t count() const { return count_; }
   bool full() const { return count_ == kBlockLanes; }
   // Adds a hit to the next lane and returns the lane. All hits of a block have materials of one class; ray and hit must stay in
-  // place until clear(). ends: the path ends here, so that its surface scatters no light.
+  // place until clear(). ends: the surface scatters no light; the path ends here or passes straight on.
   uint32_t add(const Ray &ray, const Hit &hit, const Material &material, bool ends = false);
   // Replaces the surface of a lane, seen along a view direction of any length.
   void replace(uint32_t lane, const Surface &surface, const glm::dvec3 &view);
@@ -119,7 +121,7 @@ public:
   // Shows all surfaces as opaque.
   void make_opaque();
   void build_lobes();
-  // Computes the means of the lobes that passes need.
+  // Computes the means of the lobes that passes need; means() and mixture() are those of the last call.
   void describe();
   void clear();
 

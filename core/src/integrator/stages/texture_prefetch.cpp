@@ -1,7 +1,7 @@
 #include "integrator/stages/texture_prefetch.h"
-#include "scene/enums.h"
 
 #include "nodes/image.h"
+#include "scene/enums.h"
 #include "scene/image.h"
 #include "scene/surface.h"
 
