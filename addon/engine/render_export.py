@@ -12,8 +12,8 @@ import bpy
 
 from ..bindings.abi import LancerError
 from ..export.camera import NO_CAMERA
-from ..export.checks import check_view_layer
 from ..export.scene import ExportOptions, export_scene
+from ..export.unsupported import check_view_layer
 from ..host.scene_copy import copied
 from ..messages.messages import Messages
 from .passes import render_passes

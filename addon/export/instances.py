@@ -10,11 +10,11 @@ import numpy as np
 from ..bindings.snapshot import InstanceTable
 from ..messages.severity import Severity
 from .apart import read_infos
-from .checks import check_hair
 from .flat import report_flat
 from .lights import export_light
 from .object_attributes import AttributeReader, read_object_attributes
 from .objects import Objects
+from .unsupported import check_hair
 
 # Types whose surface is a separate MESH entry of the depsgraph.
 _SHOWN_AS_MESH = {"CURVE", "FONT", "META", "SURFACE"}

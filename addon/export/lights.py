@@ -9,11 +9,11 @@ from ..bindings import snapshot
 from ..bindings.enums import AreaShape, Falloff, LightKind, Ray
 from ..bindings.shading import NodeRef
 from ..messages.severity import Severity
-from .checks import check_linking
 from .graph import NodeGraph
 from .images import NoPictures
 from .lamp_transforms import area_of, axes_of, cone_stretch, describe_shear, is_flattened, shines_all_around
 from .surface import emission_of
+from .unsupported import check_linking
 from .visibility import object_hidden_from
 
 _KINDS = {"POINT": LightKind.POINT, "SPOT": LightKind.SPOT, "SUN": LightKind.SUN, "AREA": LightKind.AREA}

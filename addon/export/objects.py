@@ -8,9 +8,9 @@ import numpy as np
 from ..bindings.enums import InstanceFlag, InstanceKind, Ray, Shading
 from ..messages.severity import Severity
 from .attributes import POLYGONS
-from .checks import check_object
 from .mesh import export_mesh, read_positions, shown_mesh
 from .mesh_differences import differences, lost_by_exact_shape
+from .unsupported import check_object
 from .visibility import object_hidden_from
 
 _TERMINATOR = "shadow_terminator_geometry_offset"

@@ -7,12 +7,12 @@ from ..bindings.session import Cancelled
 from ..bindings.snapshot import SceneSnapshot
 from ..messages.messages import Messages
 from .camera import export_camera
-from .checks import check_passes, check_scene, check_view_layer
 from .even_normals import with_even_normals
 from .images import Images
 from .instances import Instances
 from .materials import Materials
 from .settings import export_settings
+from .unsupported import check_passes, check_scene, check_view_layer
 from .world import export_world
 
 

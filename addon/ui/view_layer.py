@@ -3,7 +3,7 @@
 import bpy
 
 from ..bindings.enums import Pass
-from ..export.checks import EMPTY_PASSES
+from ..export.unsupported import EMPTY_PASSES
 from .panel import LancerPanel, setting
 
 _DATA = ("z", "mist", "position", "normal", "uv")

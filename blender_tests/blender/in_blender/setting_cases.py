@@ -27,7 +27,7 @@ _NEUTRAL = {
 
 
 def _told_of_scene():
-    from addon.export.checks import check_scene
+    from addon.export.unsupported import check_scene
     from addon.messages.messages import Messages
 
     messages = Messages()
@@ -105,7 +105,7 @@ def settings():
 
 def objects():
     """Return the messages for single objects: plain, and with each setting that is not supported."""
-    from addon.export.checks import check_object
+    from addon.export.unsupported import check_object
     from addon.messages.messages import Messages
 
     def told(thing):
