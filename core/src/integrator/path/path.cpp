@@ -192,7 +192,7 @@ void PathIntegrator::split() {
   }
 }
 
-// Samples a light in every lane that may scatter its light, or several lights in a lane that splits.
+// Samples a light in every lane that may scatter light, or several lights in a lane that splits.
 void PathIntegrator::light() {
   uint32_t asking = ((1u << surface_.count()) - 1u) & ~ends_;
   const uint32_t count = splitting_ ? settings_.splits.lights : 1;

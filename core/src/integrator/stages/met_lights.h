@@ -56,7 +56,7 @@ private:
   const Scene &scene_;
   const LightKernel &kernel_;
   SkyStage sky_;
-  // Of the last batch.
+  // The last batch: its rays, their hits and the vertices that they left.
   std::span<const Ray> rays_;
   std::span<const Hit> hits_;
   std::span<const Scattering> from_;

@@ -117,7 +117,7 @@ void SurfaceStage::run_nodes(std::span<const View> views) {
   }
 }
 
-// Both normals are turned to the viewer's side.
+// Turns both normals to the viewer's side.
 void SurfaceStage::place_nodes(const Material &material, std::span<const View> views) {
   const SurfaceBlock &at = surfaces_;
   nodes_.used = (1u << count_) - 1u;
