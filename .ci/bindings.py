@@ -1,6 +1,6 @@
 """Generates the interface's numbers and structs in Python, and the core's table of parameters, from the C header.
 
-    bindings.py         writes addon/bindings/enums.py and structs.py, core/src/scene/principled_table.h and enums.h, and
+    bindings.py         writes addon/bindings/enums.py and structs.py, core/src/scene/enums.h and
                         core/src/integrator/settings_table.h, from core/include/lancer.h and lancer_probes.h
     bindings.py FOLDER  writes all files into another folder
 
@@ -172,18 +172,13 @@ def parameter_lines(name, body):
 
 
 def table_text(header):
-    """Returns the parameters of the Principled BSDF for the core: kind, member, artists' name, default."""
+    """Returns the macro of the Principled BSDF's parameters for the core: kind, member, artists' name, default."""
     body = next(match["body"] for match in STRUCT.finditer(header) if match["name"] == "principled")
     rows = ["#define LANCER_PRINCIPLED_PARAMETERS(X)"]
     for name, kind, default in parameters(body):
         spoken = name.replace("_", " ").replace("color", "colour").replace("ior", "IOR")
         rows.append(f'  X({kind.capitalize()}, {name}, "{spoken}", {default}f)')
-    return f"""// The parameters of lancer_principled: X(kind, member, name for artists, default).
-// Generated from core/include/lancer.h by `make bindings`; changes here are lost.
-#pragma once
-
-{c_macro(rows)}
-"""
+    return c_macro(rows)
 
 
 def settings(header):
@@ -205,11 +200,12 @@ def core_members(header, name):
 
 
 def core_enums_text(header):
-    """Returns the numbers of nodes, rays and materials for the core."""
+    """Returns the numbers of nodes, rays and materials, and the parameters of materials, for the core."""
     structs = "\n".join(
         f"struct {name} {{ enum : uint32_t {{\n{core_members(header, of)}\n}}; }};" for of, name in CORE_ENUMS.items()
     )
-    return f"""// The numbers of the interface that records of a scene hold.
+    return f"""// The numbers of the interface that records of a scene hold, and the parameters of lancer_principled: X(kind, member, name for
+// artists, default).
 // Generated from core/include/lancer.h by `make bindings`; changes here are lost.
 #pragma once
 
@@ -222,6 +218,8 @@ namespace lancer {{
 // clang-format on
 
 }} // namespace lancer
+
+{table_text(header)}
 """
 
 
@@ -302,7 +300,6 @@ def main(folder=None):
     for place, name, made in (
         (FOLDER, "enums.py", enums_text),
         (FOLDER, "structs.py", structs_text),
-        (CORE / "scene", "principled_table.h", table_text),
         (CORE / "scene", "enums.h", core_enums_text),
         (CORE / "integrator", "settings_table.h", settings_text),
     ):

@@ -119,7 +119,7 @@ def test_bindings_are_those_that_the_header_gives_now(tmp_path):
     """After a change of the header, `make bindings` must be run for the Python bindings and the core's table."""
     subprocess.run([sys.executable, os.path.join(ROOT, ".ci", "bindings.py"), tmp_path], check=True)
     # Python's enums.py and the core's enums.h are two files.
-    core = "core/src/scene/principled_table.h", "core/src/scene/enums.h", "core/src/integrator/settings_table.h"
+    core = "core/src/scene/enums.h", "core/src/integrator/settings_table.h"
     for made in ("addon/bindings/enums.py", "addon/bindings/structs.py", *core):
         with open(os.path.join(ROOT, made), encoding="utf-8") as file:
             assert file.read() == (tmp_path / os.path.basename(made)).read_text(encoding="utf-8"), made

@@ -3,7 +3,7 @@
 #include "objects.h"
 #include "render/session.h"
 #include "scene/fill.h"
-#include "simd/kernel_choice.h"
+#include "simd/processor.h"
 
 #include <cmath>
 

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
-#include "bsdf/frame.h"
+#include "bsdf/lobe.h"
 #include "bsdf_domain.h"
 #include "bsdf_seen.h"
 #include "statistics.h"

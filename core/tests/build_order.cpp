@@ -1,7 +1,7 @@
 // A partition by key keeps the order on both sides, whatever algorithm a library uses for the median: sums over it, and the
 // resulting trees, are the same everywhere.
 #include "accel/bvh/bvh_build.h"
-#include "compile/light_cut.h"
+#include "compile/steps.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>

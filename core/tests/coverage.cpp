@@ -1,6 +1,6 @@
 // Pixels with nothing but background are not traced: pictures equal those of tracing everything, to the bit.
 #include "random_scenes.h"
-#include "render/pass.h"
+#include "render/film.h"
 
 #include <gtest/gtest.h>
 

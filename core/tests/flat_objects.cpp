@@ -2,8 +2,8 @@
 #include "compile/scene.h"
 #include "compile/steps.h"
 #include "nodes_lab.h"
+#include "scene/affine.h"
 #include "scene/description.h"
-#include "scene/flat_map.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -6,6 +6,7 @@
 
 #include "lights/light.h"
 #include "lights/light_tree.h"
+#include "lights/sample_light.h"
 #include "sampling/direction_map.h"
 
 #include <algorithm>

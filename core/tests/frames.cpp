@@ -1,5 +1,5 @@
 // The local frame of a normal is orthonormal for every direction, also next to its poles.
-#include "bsdf/frame.h"
+#include "bsdf/lobe.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

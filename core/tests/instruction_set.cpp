@@ -1,5 +1,5 @@
 // Choice of the kernels' copy: the widest that the processor supports, with any compiler's library.
-#include "simd/kernel_choice.h"
+#include "simd/processor.h"
 
 #include <cstdlib>
 #include <fstream>

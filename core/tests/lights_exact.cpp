@@ -1,5 +1,5 @@
 // Exact surfaces that emit: samples cover each part by its area, with the density that belongs to the whole area.
-#include "lights/emitter.h"
+#include "lights/emission.h"
 #include "nodes_lab.h"
 #include "scene/fill.h"
 #include "scene/geometry.h"

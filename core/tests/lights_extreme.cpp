@@ -8,6 +8,7 @@
 #include "light_choosers.h"
 #include "lights/light_tree.h"
 #include "lights/round_light.h"
+#include "lights/sample_light.h"
 #include "statistics.h"
 
 namespace lancer {

@@ -1,4 +1,5 @@
 // Lights along a ray: hit where sampling would put them, and only lights that sampling can choose.
+#include "lights/sample_light.h"
 #include "round_lamp.h"
 #include "tiny_scene.h"
 

@@ -2,6 +2,7 @@
 #include "integrator/stages/light.h"
 #include "lights/light_set.h"
 #include "lights/round_light.h"
+#include "lights/sample_light.h"
 
 #include <gtest/gtest.h>
 #include <random>

@@ -1,5 +1,6 @@
 // Area lights of small spread: only the part that lights a point is sampled, and nothing outside the light.
 #include "lights/light.h"
+#include "lights/sample_light.h"
 
 #include <glm/gtc/constants.hpp>
 #include <gtest/gtest.h>

@@ -2,6 +2,7 @@
 // light is left out.
 #include "light_choosers.h"
 #include "lights/light_tree.h"
+#include "lights/sample_light.h"
 #include "statistics.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Vertex normals weighted by the area of the faces.
-#include "compile/mesh_normals.h"
+#include "compile/steps.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

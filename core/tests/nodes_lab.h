@@ -5,8 +5,8 @@
 #include "compile/scene.h"
 #include "nodes/run.h"
 #include "scene/camera.h"
-#include "scene/error.h"
 #include "scene/fill.h"
+#include "scene/messages.h"
 
 #include <gtest/gtest.h>
 

@@ -2,9 +2,9 @@
 #include "nodes_lab.h"
 
 #include "nodes/curves.h"
-#include "nodes/gradient.h"
 #include "nodes/noise.h"
 #include "nodes/run.h"
+#include "nodes/texture_nodes.h"
 #include "nodes/voronoi.h"
 
 #include <cmath>

@@ -1,5 +1,5 @@
 // The points at which flat shading computes a polygon's colour.
-#include "compile/mesh_normals.h"
+#include "compile/steps.h"
 
 #include <gtest/gtest.h>
 

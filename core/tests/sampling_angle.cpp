@@ -1,4 +1,4 @@
-#include "sampling/angle.h"
+#include "sampling/elementary.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Sampling of rectangles: directions are uniform over the solid angle.
-#include "sampling/spherical.h"
+#include "sampling/warp.h"
 
 #include <gtest/gtest.h>
 #include <vector>

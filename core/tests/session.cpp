@@ -1,5 +1,5 @@
 // Complete renders through the C interface: determinism, cancelling, lifetime of handles, replay.
-#include "scene/error.h"
+#include "scene/messages.h"
 #include "tiny_scene.h"
 
 #include <cmath>

@@ -1,7 +1,6 @@
 #include "accel/hit_tests.h"
 
 #include "accel/roots.h"
-#include "accel/triangle.h"
 #include "sampling/elementary.h"
 
 #include <algorithm>

@@ -1,7 +1,6 @@
 // The BSDF of a surface at a hit: a sum of lobes with one evaluation and one sampling routine.
 #pragma once
 
-#include "bsdf/frame.h"
 #include "bsdf/lobe.h"
 
 namespace lancer {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "bsdf/beckmann.h"
-#include "bsdf/frame.h"
 #include "bsdf/fresnel.h"
 #include "bsdf/lobe.h"
 #include "sampling/warp.h"

@@ -2,7 +2,6 @@
 // the accelerator.
 #include "accel/coplanar/coplanar_faces.h"
 #include "compile/features.h"
-#include "compile/mesh_normals.h"
 #include "compile/scene.h"
 #include "compile/steps.h"
 #include "simd/parallel.h"

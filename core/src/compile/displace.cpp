@@ -1,6 +1,5 @@
 #include "compile/steps.h"
 
-#include "compile/mesh_normals.h"
 #include "compile/scene.h"
 #include "nodes/run.h"
 #include "scene/geometry.h"

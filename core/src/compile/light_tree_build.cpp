@@ -1,5 +1,5 @@
 // Builds the tree of many lights and the tree of few lights.
-#include "compile/light_cut.h"
+#include "compile/steps.h"
 #include "lights/light_bounds.h"
 #include "lights/light_importance.h"
 #include "lights/light_tree.h"

@@ -1,4 +1,4 @@
-#include "compile/mesh_normals.h"
+#include "compile/steps.h"
 
 #include "sampling/elementary.h"
 #include "scene/affine.h"

@@ -1,8 +1,8 @@
 // Area lights: a rectangle, a parallelogram or an ellipse that emits to its front side.
 #pragma once
 
-#include "lights/light_lanes.h"
-#include "sampling/spherical.h"
+#include "lights/light.h"
+#include "sampling/warp.h"
 
 namespace lancer {
 

@@ -1,7 +1,7 @@
-#include "lights/emitter.h"
+#include "lights/emission.h"
 
 #include "lights/seen_face.h"
-#include "sampling/angle.h"
+#include "sampling/elementary.h"
 #include "sampling/warp.h"
 #include "scene/geometry.h"
 #include "scene/quadric_point.h"

@@ -1,7 +1,7 @@
 // All lights of a scene: the choice of a light to sample, and the lights that a ray may hit.
 #pragma once
 
-#include "lights/emitter.h"
+#include "lights/emission.h"
 #include "lights/environment.h"
 #include "lights/light_tree.h"
 

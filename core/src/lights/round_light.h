@@ -1,7 +1,7 @@
 // Point and spot lights: a true point, a disk that faces the shaded point, or a ball.
 #pragma once
 
-#include "lights/light_lanes.h"
+#include "lights/light.h"
 #include "sampling/warp.h"
 
 #include <numbers>

@@ -66,4 +66,17 @@ LANCER_LANE MaskOf<F> may_meet(const OneLight<F> &light, const Double3Of<F> &o, 
   }
 }
 
+// One light and one point, at width 1.
+inline LightSample sample(const Light &light, const glm::dvec3 &p, const glm::vec2 &u) {
+  LightSampleLanes<float> found{};
+  sample_light(OneLight<float>{light}, Vector3<double>(p), u.x, u.y, true, found);
+  return {found.target, found.wi, found.distance, found.radiance, found.pdf, found.delta};
+}
+
+// Returns pdf 0 where the ray misses; a light without extent is never hit.
+inline LightHit meet(const Light &light, const glm::dvec3 &o, const glm::dvec3 &wi) {
+  const LightHitLanes<float> hit = meet_light(OneLight<float>{light}, Vector3<double>(o), Vector3<double>(wi));
+  return hit.pdf > 0.0 ? LightHit{hit.radiance, hit.pdf, hit.distance} : LightHit{};
+}
+
 } // namespace lancer

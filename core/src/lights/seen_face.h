@@ -2,7 +2,6 @@
 // float, or lanes of floats.
 #pragma once
 
-#include "sampling/spherical.h"
 #include "sampling/warp.h"
 #include "scene/hit_surface.h"
 

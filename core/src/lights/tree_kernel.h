@@ -2,7 +2,7 @@
 #pragma once
 
 #include "simd/block.h"
-#include "simd/kernel_choice.h"
+#include "simd/processor.h"
 
 #include <cstdint>
 

@@ -4,7 +4,7 @@
 
 #include "nodes/look_up.h"
 #include "nodes/vector_nodes.h"
-#include "sampling/angle.h"
+#include "sampling/elementary.h"
 
 namespace lancer {
 namespace {

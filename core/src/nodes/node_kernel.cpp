@@ -1,8 +1,8 @@
 // Compiled once per instruction set, with LANCER_ISA as its name. This file must emit no shared (weak) symbol: see
 // bvh_kernel.cpp.
 #include "nodes/dispatch.h"
-#include "simd/kernel_choice.h"
 #include "simd/kernel_lanes.h"
+#include "simd/processor.h"
 
 namespace lancer {
 

@@ -18,7 +18,7 @@
 #include "scene/material.h"
 #include "scene/node.h"
 #include "scene/surface.h"
-#include "simd/kernel_choice.h"
+#include "simd/processor.h"
 
 #include <span>
 #include <vector>

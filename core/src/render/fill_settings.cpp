@@ -1,6 +1,6 @@
 #include "render/session.h"
 
-#include "scene/error.h"
+#include "scene/messages.h"
 
 #include <cmath>
 

@@ -1,8 +1,9 @@
 #include "render/probe.h"
+#include "lights/sample_light.h"
 
 #include "bsdf/classic_lobes.h"
 #include "integrator/stages/light.h"
-#include "scene/error.h"
+#include "scene/messages.h"
 
 #include <cmath>
 

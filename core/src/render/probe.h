@@ -4,7 +4,7 @@
 #include "compile/scene.h"
 #include "lancer_probes.h"
 #include "render/session.h"
-#include "scene/error.h"
+#include "scene/messages.h"
 
 #include <cmath>
 #include <cstddef>

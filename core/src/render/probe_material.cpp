@@ -1,8 +1,8 @@
 #include "render/probe.h"
 
 #include "integrator/stages/shader.h"
-#include "scene/error.h"
 #include "scene/fill.h"
+#include "scene/messages.h"
 
 #include <cmath>
 

@@ -1,8 +1,8 @@
 #include "render/session.h"
 
 #include "render/picture_error.h"
-#include "scene/error.h"
 #include "scene/fill.h"
+#include "scene/messages.h"
 #include "simd/vectors.h"
 
 #include <tuple>

@@ -1,7 +1,7 @@
 #include "render/thread_pool.h"
 
-#include "simd/float_environment.h"
 #include "simd/parallel.h"
+#include "simd/processor.h"
 
 #include <algorithm>
 #include <array>

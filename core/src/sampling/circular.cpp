@@ -1,5 +1,4 @@
 // Sine, cosine and their inverses with the same bits on every machine.
-#include "sampling/angle.h"
 #include "sampling/elementary.h"
 
 #include <algorithm>

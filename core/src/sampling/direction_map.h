@@ -1,8 +1,8 @@
 // Directions with a density that is constant in each cell of a grid over latitude and longitude.
 #pragma once
 
-#include "sampling/angle.h"
 #include "sampling/distribution.h"
+#include "sampling/elementary.h"
 #include "simd/vectors.h"
 
 namespace lancer {

@@ -1,10 +1,12 @@
-// Affine maps between object and world space, and the frame in which scenes are traced.
+// Affine maps between object and world space: their invertible stand-ins where they flatten, and the frame in which scenes are
+// traced.
 #pragma once
 
 #include "sampling/elementary.h"
 
 #include <cmath>
 #include <glm/glm.hpp>
+#include <optional>
 
 namespace lancer {
 
@@ -72,5 +74,19 @@ struct Normalisation {
   glm::dvec3 to_world(const glm::dvec3 &p) const { return p / scale + centre; }
   Affine to_normalised(const Affine &map) const { return {map.linear * scale, to_normalised(map.translation)}; }
 };
+
+// Placements that flatten: singular maps of rank 2.
+
+// An invertible map that agrees with a singular one on the plane through the origin perpendicular to axis.
+struct FlatMap {
+  Affine map;      // of positive determinant: the winding of faces in the world decides their outer side, as in Cycles
+  glm::dvec3 axis; // object space, unit: the kernel of the singular map
+};
+
+// Whether the determinant is zero at double's roundoff, independent of scale.
+bool is_singular(const glm::dmat3 &linear);
+
+// map: singular. Returns nothing if its rank is below 2.
+std::optional<FlatMap> flat_map(const Affine &map);
 
 } // namespace lancer

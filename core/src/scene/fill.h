@@ -4,7 +4,7 @@
 #include "lancer.h"
 #include "scene/camera.h"
 #include "scene/description.h"
-#include "scene/error.h"
+#include "scene/messages.h"
 
 #include <cstdio>
 

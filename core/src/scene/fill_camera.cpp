@@ -1,7 +1,7 @@
 #include "scene/fill.h"
 
-#include "scene/error.h"
 #include "scene/geometry.h"
+#include "scene/messages.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Checks and copies images. Colours with straight alpha are multiplied by alpha here, once, in the stored bit depth.
 #include "scene/description.h"
-#include "scene/error.h"
 #include "scene/fill.h"
+#include "scene/messages.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 // Checks and copies placements: existing meshes and materials, invertible or flattening maps.
+#include "scene/affine.h"
 #include "scene/description.h"
-#include "scene/error.h"
 #include "scene/fill.h"
-#include "scene/flat_map.h"
+#include "scene/messages.h"
 
 #include <algorithm>
 #include <cmath>

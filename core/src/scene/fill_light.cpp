@@ -1,8 +1,8 @@
 // Checks and copies lights and the world.
 #include "sampling/elementary.h"
 #include "scene/description.h"
-#include "scene/error.h"
 #include "scene/fill.h"
+#include "scene/messages.h"
 
 #include <algorithm>
 #include <cmath>

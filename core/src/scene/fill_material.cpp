@@ -1,7 +1,7 @@
 // Checks and copies materials: replaces values outside a model's range, with a message, and rejects invalid structure.
 #include "scene/description.h"
-#include "scene/error.h"
 #include "scene/fill.h"
+#include "scene/messages.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 // Checks and copies meshes: every index in range, every kept face of finite and non-zero area.
 #include "scene/description.h"
-#include "scene/error.h"
 #include "scene/fill.h"
 #include "scene/geometry.h"
+#include "scene/messages.h"
 
 #include <cmath>
 

@@ -1,7 +1,7 @@
 // Checks and copies nodes, so that evaluation needs no checks.
 #include "scene/description.h"
-#include "scene/error.h"
 #include "scene/fill.h"
+#include "scene/messages.h"
 #include "scene/surface.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // Lobes of a material with every parameter evaluated: the input from which a BSDF is built at a hit.
 #pragma once
 
-#include "scene/principled_table.h"
+#include "scene/enums.h"
 #include "simd/vectors.h"
 
 #include <cstdint>

@@ -3,7 +3,7 @@
 
 #include "bsdf/material_lobes.h"
 #include "scene/lobe_inputs.h"
-#include "simd/kernel_choice.h"
+#include "simd/processor.h"
 
 namespace lancer {
 

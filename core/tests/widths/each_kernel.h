@@ -1,7 +1,7 @@
 // The copies of a kernel that this processor runs. LANCER_ISA limits them, as it limits those of a render.
 #pragma once
 
-#include "simd/kernel_choice.h"
+#include "simd/processor.h"
 
 #include <initializer_list>
 #include <vector>

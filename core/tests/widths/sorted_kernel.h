@@ -1,7 +1,7 @@
 // The functions of simd/sorted_lanes.h for eight lanes, one copy per instruction set.
 #pragma once
 
-#include "simd/kernel_choice.h"
+#include "simd/processor.h"
 
 #include <cstdint>
 

@@ -1,8 +1,8 @@
 // Compiled once per instruction set, with LANCER_ISA naming it.
 #include "widths/texture_kernel.h"
 
-#include "nodes/gradient.h"
 #include "nodes/noise.h"
+#include "nodes/texture_nodes.h"
 #include "nodes/voronoi.h"
 #include "simd/kernel_lanes.h"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "nodes/curves.h"
-#include "simd/kernel_choice.h"
+#include "simd/processor.h"
 
 namespace lancer {
 

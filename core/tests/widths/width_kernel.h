@@ -4,7 +4,7 @@
 #include "lights/light_choice.h"
 #include "sampling/direction_map.h"
 #include "sampling/pixel_filter.h"
-#include "simd/kernel_choice.h"
+#include "simd/processor.h"
 
 namespace lancer {
 

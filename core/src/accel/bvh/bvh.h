@@ -4,7 +4,7 @@
 #include "accel/bounds.h"
 #include "accel/placed_shape.h"
 #include "scene/ray.h"
-#include "simd/kernel_choice.h"
+#include "simd/processor.h"
 
 #include <cstddef>
 

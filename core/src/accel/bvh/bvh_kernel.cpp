@@ -7,7 +7,7 @@
 
 #include "accel/bvh/packet.h"
 #include "accel/bvh/visit.h"
-#include "simd/kernel_choice.h"
+#include "simd/processor.h"
 
 namespace lancer {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "accel/bvh/bvh.h"
-#include "accel/triangle.h"
+#include "accel/hit_tests.h"
 #include "simd/sorted_lanes.h"
 
 namespace lancer {

@@ -2,8 +2,8 @@
 // file must emit no shared (weak) symbol: see bvh_kernel.cpp.
 #include "accel/bvh/bvh.h"
 
-#include "simd/kernel_choice.h"
 #include "simd/kernel_lanes.h"
+#include "simd/processor.h"
 #include "simd/sorted_lanes.h"
 
 namespace lancer {

@@ -1,6 +1,5 @@
 #include "accel/accelerator.h"
 #include "accel/coplanar/coplanar_faces.h"
-#include "accel/coplanar/plane_rule.h"
 
 namespace lancer {
 

@@ -1,6 +1,6 @@
 #include "accel/coplanar/coplanar_faces.h"
 
-#include "accel/coplanar/face_candidates.h"
+#include "accel/coplanar/flat_face.h"
 #include "simd/parallel.h"
 
 namespace lancer {

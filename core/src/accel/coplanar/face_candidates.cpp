@@ -1,4 +1,4 @@
-#include "accel/coplanar/face_candidates.h"
+#include "accel/coplanar/flat_face.h"
 
 #include "accel/bounds.h"
 #include "simd/parallel.h"

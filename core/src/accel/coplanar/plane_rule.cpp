@@ -1,4 +1,4 @@
-#include "accel/coplanar/plane_rule.h"
+#include "accel/coplanar/coplanar_faces.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "integrator/classic/classic.h"
 
-#include "compile/mesh_normals.h"
+#include "compile/steps.h"
 #include "scene/hit_surface.h"
 #include "simd/vectors.h"
 

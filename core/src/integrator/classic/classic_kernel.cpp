@@ -1,6 +1,6 @@
 // Compiled once per instruction set, with LANCER_ISA as its name. This file must emit no shared (weak) symbol: see
 // bvh_kernel.cpp.
-#include "integrator/classic/classic_kernel.h"
+#include "integrator/classic/classic.h"
 
 #include "integrator/classic/illumination.h"
 #include "integrator/stages/lobe_lanes.h"

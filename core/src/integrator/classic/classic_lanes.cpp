@@ -1,7 +1,7 @@
 // Vertices of the recursion in lanes: their surfaces, their passes, and the light of every lamp.
 #include "integrator/classic/classic.h"
 
-#include "compile/mesh_normals.h"
+#include "compile/steps.h"
 #include "integrator/aov/first_surface.h"
 #include "simd/vectors.h"
 

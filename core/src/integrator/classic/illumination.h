@@ -3,7 +3,7 @@
 #pragma once
 
 #include "bsdf/bsdf.h"
-#include "lights/light_lanes.h"
+#include "lights/light.h"
 #include "sampling/elementary.h"
 #include "scene/enums.h"
 #include "simd/vectors.h"

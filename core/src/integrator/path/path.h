@@ -1,7 +1,6 @@
 // Path tracing: global illumination with next-event estimation, multiple importance sampling and Russian roulette.
 #pragma once
 
-#include "integrator/path/last_bounces.h"
 #include "integrator/path/path_film.h"
 #include "integrator/path/path_state.h"
 #include "integrator/stages/camera.h"

@@ -7,7 +7,7 @@
 #include "integrator/sample.h"
 #include "integrator/stages/numbers.h"
 #include "simd/block.h"
-#include "simd/kernel_choice.h"
+#include "simd/processor.h"
 
 #include <bit>
 

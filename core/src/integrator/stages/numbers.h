@@ -6,7 +6,7 @@
 
 #include "sampling/sobol.h"
 #include "simd/block.h"
-#include "simd/kernel_choice.h"
+#include "simd/processor.h"
 
 namespace lancer {
 

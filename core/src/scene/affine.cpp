@@ -1,4 +1,4 @@
-#include "scene/flat_map.h"
+#include "scene/affine.h"
 
 #include <algorithm>
 

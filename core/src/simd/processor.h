@@ -1,5 +1,8 @@
-// The choice of a kernel's copy. A kernel is compiled once per instruction set, with LANCER_ISA as its name, and one copy runs.
+// The processor that runs the code: its instruction set, which chooses a copy of each kernel, and its mode of float arithmetic.
+// A kernel is compiled once per instruction set, with LANCER_ISA as its name, and one copy runs.
 #pragma once
+
+#include <cstdint>
 
 // The instruction set's name as text.
 
@@ -54,5 +57,18 @@ enum class InstructionSet { Scalar, Generic, Sse4, Avx2, Avx512 };
 // Returns the best set that this processor supports, or the smaller one in the environment variable LANCER_ISA.
 // Scalar: shading uses a copy of one lane, which is easier to debug; other kernels use the smallest set.
 InstructionSet instruction_set();
+
+// Sets the processor's float arithmetic to round-to-nearest with subnormals during its lifetime: other code in the same process
+// may have set another mode, which threads inherit.
+class FloatEnvironment {
+public:
+  FloatEnvironment();
+  ~FloatEnvironment();
+  FloatEnvironment(const FloatEnvironment &) = delete;
+  FloatEnvironment &operator=(const FloatEnvironment &) = delete;
+
+private:
+  uint64_t saved_;
+};
 
 } // namespace lancer
