@@ -45,11 +45,11 @@ std::vector<glm::vec3> one_traversal(const Scene &scene, uint32_t deepest) {
   settings.transparent_shadows = deepest;
   const Camera camera = camera_above(scene, 1);
   ShadowStage queue(scene, camera, settings);
-  uint32_t slot = 0;
+  uint32_t sample = 0;
   for (const Question &question : questions(scene))
-    queue.push(question.ray, {.slot = slot++}, glm::vec3(1.0f), question.passed);
-  std::vector<glm::vec3> arrived(slot, glm::vec3(0.0f));
-  EXPECT_EQ(queue.trace([&](const WaitingLight &waiting, const glm::vec3 &light) { arrived[waiting.slot] = light; }), slot);
+    queue.push(question.ray, {.sample = sample++}, glm::vec3(1.0f), question.passed);
+  std::vector<glm::vec3> arrived(sample, glm::vec3(0.0f));
+  EXPECT_EQ(queue.trace([&](const WaitingLight &waiting, const glm::vec3 &light) { arrived[waiting.sample] = light; }), sample);
   return arrived;
 }
 

@@ -1,4 +1,4 @@
-// Traversal of the wide BVH: coherent rays walk the tree as a packet (packet.h); the others go on alone, kSlots at a time, by
+// Traversal of the wide BVH: coherent rays walk the tree as a packet (packet.h); the others go on alone, kFlights at a time, by
 // the kind of the entry on top of their stack (visit.h). Compiled once per instruction set, with LANCER_ISA as its name. All
 // copies give the same bits, because no operation is contracted and boxes only cull. This file must emit no shared (weak)
 // symbol: the linker would keep one translation unit's copy for all instruction sets. So it uses plain structs and forced
@@ -13,8 +13,8 @@ namespace lancer {
 
 namespace {
 
-// Starts a ray in a slot; returns false if the ray's result is already known.
-LANCER_LANE bool start(const BvhScene &scene, const Ray &ray, const Entering &e, uint32_t lane, Slot &s) {
+// Starts the flight of a ray; returns false if the ray's result is already known.
+LANCER_LANE bool start(const BvhScene &scene, const Ray &ray, const Entering &e, uint32_t lane, Flight &s) {
   s.best.t = __builtin_inf();
   s.best.u = s.best.v = 0.0;
   s.best.instance = s.best.primitive = kNone;
@@ -53,26 +53,26 @@ template <Question q> LANCER_LANE void store_answer(const Hit &best, size_t numb
     hits[number] = best;
 }
 
-// Slots that wait for the same kind of work.
+// Flights that wait for the same kind of work.
 struct Queue {
   uint32_t count = 0;
-  Slot *slots[kSlots];
+  Flight *flights[kFlights];
 };
 
 template <Question q>
 LANCER_LANE void trace(const BvhScene &scene, const Ray *rays, Hit *hits, uint8_t *occluded, size_t count, HitFilter *filter,
                        TraversalCounts *counts) {
-  Slot slots[kSlots];
+  Flight flights[kFlights];
   Queue queues[kBvhKinds];
-  Slot *others[kSlots];
+  Flight *others[kFlights];
   uint32_t other_count = 0;
   size_t next = 0, row = q.any || q.counted ? 4 : find_row(rays, count);
   Entering entering;
   Leftovers leftovers;
-  uint32_t waiting = 0; // lanes of entering that no slot has taken
+  uint32_t waiting = 0; // lanes of entering without a flight
   bool together = false;
-  // Fills a slot with the next ray that needs a traversal of its own.
-  const auto refill = [&](Slot & s) __attribute__((always_inline)) {
+  // Replaces a flight that has ended by that of the next ray that needs a traversal of its own.
+  const auto refill = [&](Flight & s) __attribute__((always_inline)) {
     for (;;) {
       while (waiting != 0) {
         const uint32_t lane = static_cast<uint32_t>(__builtin_ctz(waiting));
@@ -111,7 +111,7 @@ LANCER_LANE void trace(const BvhScene &scene, const Ray *rays, Hit *hits, uint8_
       }
     }
   };
-  // Does the work of one kind for all slots that wait for it.
+  // Does the work of one kind for all flights that wait for it.
   const auto each = [&](uint32_t kind, auto work) __attribute__((always_inline)) {
     Queue &queue = queues[kind];
     other_count = queue.count;
@@ -122,12 +122,12 @@ LANCER_LANE void trace(const BvhScene &scene, const Ray *rays, Hit *hits, uint8_
       counts->instances += kind == kBvhInstance ? other_count : 0;
     }
     for (uint32_t i = 0; i < other_count; ++i)
-      work(*queue.slots[i]);
+      work(*queue.flights[i]);
     for (uint32_t i = 0; i < other_count; ++i)
-      go_on(*(others[i] = queue.slots[i]));
+      go_on(*(others[i] = queue.flights[i]));
   };
 
-  for (Slot &s : slots) {
+  for (Flight &s : flights) {
     s.arrays[kBvhTriangles] = s.arrays[kBvhPlaced] = reinterpret_cast<const char *>(scene.blocks);
     s.arrays[kBvhSpheres] = reinterpret_cast<const char *>(scene.spheres);
     s.arrays[kBvhInstance] = reinterpret_cast<const char *>(scene.shapes);
@@ -135,10 +135,10 @@ LANCER_LANE void trace(const BvhScene &scene, const Ray *rays, Hit *hits, uint8_
     refill(s);
   }
   for (;;) {
-    // Sort the slots by kind; process the kind with the most slots.
+    // Sort the flights by kind; process the kind with the most flights.
     for (uint32_t i = 0; i < other_count; ++i) {
       Queue &queue = queues[others[i]->kind];
-      queue.slots[queue.count++] = others[i];
+      queue.flights[queue.count++] = others[i];
     }
     other_count = 0;
     uint32_t most = 0;
@@ -153,13 +153,13 @@ LANCER_LANE void trace(const BvhScene &scene, const Ray *rays, Hit *hits, uint8_
       if (q.counted)
         counts->nodes += present;
       for (uint32_t i = 0; i < present; ++i)
-        visit_node(*queue.slots[i]);
-      // Keep the slots that wait for another node.
+        visit_node(*queue.flights[i]);
+      // Keep the flights that wait for another node.
       uint32_t inner = 0, other = 0;
       for (uint32_t i = 0; i < present; ++i) {
-        Slot *s = queue.slots[i];
+        Flight *s = queue.flights[i];
         go_on(*s);
-        queue.slots[inner] = others[other] = s;
+        queue.flights[inner] = others[other] = s;
         inner += s->kind == kBvhInner;
         other += s->kind != kBvhInner;
       }
@@ -169,36 +169,37 @@ LANCER_LANE void trace(const BvhScene &scene, const Ray *rays, Hit *hits, uint8_
     }
     case kBvhTriangles:
       each(
-          kBvhTriangles, [&](Slot & s) __attribute__((always_inline)) { visit_triangles<q>(filter, s); });
+          kBvhTriangles, [&](Flight & s) __attribute__((always_inline)) { visit_triangles<q>(filter, s); });
       break;
     case kBvhPlaced:
       each(
-          kBvhPlaced, [&](Slot & s) __attribute__((always_inline)) { visit_placed<q>(scene, rays[s.number], filter, s); });
+          kBvhPlaced, [&](Flight & s) __attribute__((always_inline)) { visit_placed<q>(scene, rays[s.number], filter, s); });
       break;
     case kBvhSpheres:
       each(
-          kBvhSpheres, [&](Slot & s) __attribute__((always_inline)) { visit_spheres<q>(scene, rays[s.number], filter, s); });
+          kBvhSpheres, [&](Flight & s) __attribute__((always_inline)) { visit_spheres<q>(scene, rays[s.number], filter, s); });
       break;
     case kBvhInstance:
       each(
-          kBvhInstance, [&](Slot & s) __attribute__((always_inline)) { enter_instance<q>(scene, rays[s.number], filter, s); });
+          kBvhInstance, [&](Flight & s)
+                            __attribute__((always_inline)) { enter_instance<q>(scene, rays[s.number], filter, s); });
       break;
     case kBvhUnbounded:
       each(
-          kBvhUnbounded, [&](Slot & s)
+          kBvhUnbounded, [&](Flight & s)
                              __attribute__((always_inline)) { visit_unbounded<q>(scene, rays[s.number], filter, s); });
       break;
     case kBvhLeave:
       each(
-          kBvhLeave, [&](Slot & s) __attribute__((always_inline)) { leave_instance(scene, s); });
+          kBvhLeave, [&](Flight & s) __attribute__((always_inline)) { leave_instance(scene, s); });
       break;
     case kBvhDone: {
       Queue &queue = queues[kBvhDone];
       const uint32_t present = queue.count;
       queue.count = 0;
       for (uint32_t i = 0; i < present; ++i) {
-        store_answer<q>(queue.slots[i]->best, queue.slots[i]->number, hits, occluded);
-        refill(*queue.slots[i]);
+        store_answer<q>(queue.flights[i]->best, queue.flights[i]->number, hits, occluded);
+        refill(*queue.flights[i]);
       }
       break;
     }

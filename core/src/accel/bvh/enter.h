@@ -2,7 +2,7 @@
 // bvh_kernel.cpp: everything has internal linkage.
 #pragma once
 
-#include "accel/bvh/slot.h"
+#include "accel/bvh/flight.h"
 #include "simd/kernel_lanes.h"
 
 #include <cstddef>

@@ -35,7 +35,7 @@ LANCER_LANE bool leave_over(uint32_t child, uint32_t lanes, const float *entry, 
 }
 
 // Continues with the leftovers of a lane alone, the nearest on top.
-LANCER_LANE void resume(const Leftovers &l, uint32_t lane, Slot &s) {
+LANCER_LANE void resume(const Leftovers &l, uint32_t lane, Flight &s) {
   s.best = l.best[lane];
   s.unbounded = 0;
   s.size = 1;

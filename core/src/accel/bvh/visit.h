@@ -9,7 +9,7 @@ namespace lancer {
 namespace {
 
 // Replaces a node by its children that the ray hits, the nearest on top.
-LANCER_LANE void visit_node(Slot &s) {
+LANCER_LANE void visit_node(Flight &s) {
   const Slab &ray = s.slab;
   const BvhNode &node = *reinterpret_cast<const BvhNode *>(s.at);
   // Width of a register, at most the eight children.
@@ -30,9 +30,9 @@ LANCER_LANE void visit_node(Slot &s) {
   s.size += keep_ordered<kWidth>(s.entries + s.size, s.children + s.size, entry, exit, node.child, node.order[ray.octant]);
 }
 
-LANCER_LANE void done(Slot &s) { s.size = 1; }
+LANCER_LANE void done(Flight &s) { s.size = 1; }
 
-LANCER_LANE void become_mesh_ray(const BvhScene &scene, uint32_t instance, const Ray &ray, Slot &s) {
+LANCER_LANE void become_mesh_ray(const BvhScene &scene, uint32_t instance, const Ray &ray, Flight &s) {
   const PlacedShape &shape = scene.shapes[instance];
   s.instance = instance;
   s.skip = ray.skip_instance == instance ? ray.skip_primitive : kNone;
@@ -40,7 +40,7 @@ LANCER_LANE void become_mesh_ray(const BvhScene &scene, uint32_t instance, const
 }
 
 // Stores a closer hit if it passes the filter.
-template <Question q> LANCER_LANE bool store_hit(HitFilter *filter, Slot &s, const Hit &hit) {
+template <Question q> LANCER_LANE bool store_hit(HitFilter *filter, Flight &s, const Hit &hit) {
   if (left_out<q>(filter, s.number, hit))
     return false;
   s.best = hit;
@@ -51,20 +51,21 @@ template <Question q> LANCER_LANE bool store_hit(HitFilter *filter, Slot &s, con
   return true;
 }
 
-template <Question q, class Next> LANCER_LANE void try_places(uint32_t instance, HitFilter *filter, Slot &s, const Next &next) {
+template <Question q, class Next>
+LANCER_LANE void try_places(uint32_t instance, HitFilter *filter, Flight &s, const Next &next) {
   try_places(
       instance, s.tmin, s.best,
       next, [&](const Hit &hit) __attribute__((always_inline)) { return store_hit<q>(filter, s, hit); });
 }
 
 template <Question q>
-LANCER_LANE void visit_quadric(const PlacedShape &shape, uint32_t instance, const Ray &ray, HitFilter *filter, Slot &s) {
+LANCER_LANE void visit_quadric(const PlacedShape &shape, uint32_t instance, const Ray &ray, HitFilter *filter, Flight &s) {
   if (visible(shape, ray))
     try_places<q>(
         instance, filter, s, [&](double &t) __attribute__((always_inline)) { return next_place(shape, instance, ray, t); });
 }
 
-template <Question q> LANCER_LANE void visit_spheres(const BvhScene &scene, const Ray &ray, HitFilter *filter, Slot &s) {
+template <Question q> LANCER_LANE void visit_spheres(const BvhScene &scene, const Ray &ray, HitFilter *filter, Flight &s) {
   const SphereBlock &block = *reinterpret_cast<const SphereBlock *>(s.at);
   BlockRoots roots;
   for (uint32_t met = intersect_spheres(block, ray, roots); met != 0; met &= met - 1) {
@@ -84,7 +85,7 @@ template <Question q> LANCER_LANE void visit_spheres(const BvhScene &scene, cons
 }
 
 // Enters an instance, if the ray can hit it.
-template <Question q> LANCER_LANE void enter_instance(const BvhScene &scene, const Ray &ray, HitFilter *filter, Slot &s) {
+template <Question q> LANCER_LANE void enter_instance(const BvhScene &scene, const Ray &ray, HitFilter *filter, Flight &s) {
   const PlacedShape &shape = *reinterpret_cast<const PlacedShape *>(s.at);
   const uint32_t instance = static_cast<uint32_t>(&shape - scene.shapes);
   if (shape.mesh == kNone)
@@ -104,7 +105,7 @@ template <Question q> LANCER_LANE void enter_instance(const BvhScene &scene, con
   push(s, 0.0f, 0);
 }
 
-LANCER_LANE void leave_instance(const BvhScene &scene, Slot &s) {
+LANCER_LANE void leave_instance(const BvhScene &scene, Flight &s) {
   s.slab = s.outer;
   s.arrays[kBvhInner] = reinterpret_cast<const char *>(scene.top);
   s.base = 1;
@@ -112,7 +113,7 @@ LANCER_LANE void leave_instance(const BvhScene &scene, Slot &s) {
     shorten(s);
 }
 
-template <Question q> LANCER_LANE void visit_triangles(HitFilter *filter, Slot &s) {
+template <Question q> LANCER_LANE void visit_triangles(HitFilter *filter, Flight &s) {
   const TriangleBlock &block = *reinterpret_cast<const TriangleBlock *>(s.at);
   BlockHits<4> hits;
   bool found = false;
@@ -138,7 +139,7 @@ template <Question q> LANCER_LANE void visit_triangles(HitFilter *filter, Slot &
 }
 
 // Tests a block of the world's tree, whose triangles are in the space of their instance.
-template <Question q> LANCER_LANE void visit_placed(const BvhScene &scene, const Ray &ray, HitFilter *filter, Slot &s) {
+template <Question q> LANCER_LANE void visit_placed(const BvhScene &scene, const Ray &ray, HitFilter *filter, Flight &s) {
   const uint32_t instance = scene.block_instance[reinterpret_cast<const TriangleBlock *>(s.at) - scene.blocks];
   if (instance != s.instance)
     become_mesh_ray(scene, instance, ray, s);
@@ -147,7 +148,7 @@ template <Question q> LANCER_LANE void visit_placed(const BvhScene &scene, const
 }
 
 // Tests the unbounded instances, up to the next mesh.
-template <Question q> LANCER_LANE void visit_unbounded(const BvhScene &scene, const Ray &ray, HitFilter *filter, Slot &s) {
+template <Question q> LANCER_LANE void visit_unbounded(const BvhScene &scene, const Ray &ray, HitFilter *filter, Flight &s) {
   while (s.unbounded > 0 && !(q.any && s.best.instance != kNone)) {
     const uint32_t instance = scene.unbounded[--s.unbounded];
     if (scene.shapes[instance].mesh == kNone) {

@@ -69,44 +69,44 @@ double near_distance(const Camera &camera, const glm::dvec3 &d) {
 } // namespace
 
 DenoisingGuides begin_guides(const IntegratorSettings &settings, bool wanted) {
-  DenoisingGuides features;
-  features.open = wanted;
-  features.blended = settings.blended_features;
-  return features;
+  DenoisingGuides guides;
+  guides.open = wanted;
+  guides.blended = settings.blended_guides;
+  return guides;
 }
 
 void add_denoising_guides(const Scene &scene, const Camera &camera, const Mixture<float> &mixture, const glm::vec3 &wo,
-                          const glm::vec3 &transmittance, double distance, DenoisingGuides &features, SampleResult &result) {
+                          const glm::vec3 &transmittance, double distance, DenoisingGuides &guides, SampleResult &result) {
   // Subtract the distance of the near clipping surface.
-  if (features.first)
+  if (guides.first)
     distance -= near_distance(camera, glm::dvec3(-wo));
-  features.first = false;
-  result.denoising_depth += features.share * mean(features.beta) * nearest_float(distance / scene.normalisation.scale);
+  guides.first = false;
+  result.denoising_depth += guides.share * mean(guides.beta) * nearest_float(distance / scene.normalisation.scale);
   const glm::vec3 normal = camera.direction_to_camera(glm::dvec3(mixture.normal));
-  if (features.blended) {
+  if (guides.blended) {
     // Add the matt share, or all lobes where half of them is matt; the rest and the transmitted light continue to the next
     // surface.
     const float here = mixture.all > 0.0f ? smooth_step(mixture.matt / (0.5f * mixture.all)) : 0.0f;
     const float passing = mean(transmittance);
     const float solid = mixture.all > 0.0f ? mixture.all / (mixture.all + passing) : 0.0f;
-    result.albedo += features.share * here * features.beta * mixture.diffuse;
-    result.denoising_normal += features.share * here * solid * mean(features.beta) * normal;
-    features.beta *= mixture.specular * (1.0f - here) + transmittance;
-    features.open = largest(features.beta) > 0.0f;
+    result.albedo += guides.share * here * guides.beta * mixture.diffuse;
+    result.denoising_normal += guides.share * here * solid * mean(guides.beta) * normal;
+    guides.beta *= mixture.specular * (1.0f - here) + transmittance;
+    guides.open = largest(guides.beta) > 0.0f;
     return;
   }
   // At least three quarters are mirror-like: use the surface in the reflection.
   if (mixture.all > 0.0f && mixture.matt * 4.0f <= mixture.all) {
-    features.beta *= mixture.specular;
+    guides.beta *= mixture.specular;
     return;
   }
-  features.open = false;
-  result.albedo += features.share * features.beta * mixture.diffuse;
-  result.denoising_normal += features.share * normal;
+  guides.open = false;
+  result.albedo += guides.share * guides.beta * mixture.diffuse;
+  result.denoising_normal += guides.share * normal;
 }
 
-void add_sky_guides(const DenoisingGuides &features, SampleResult &result) {
-  if (features.open && features.blended)
+void add_sky_guides(const DenoisingGuides &guides, SampleResult &result) {
+  if (guides.open && guides.blended)
     result.denoising_depth = std::numeric_limits<float>::max();
 }
 

@@ -43,8 +43,8 @@ DenoisingGuides begin_guides(const IntegratorSettings &settings, bool wanted);
 
 // Adds the current surface, whose distance (normalised units) is measured from the previous surface.
 void add_denoising_guides(const Scene &scene, const Camera &camera, const Mixture<float> &mixture, const glm::vec3 &wo,
-                          const glm::vec3 &transmittance, double distance, DenoisingGuides &features, SampleResult &result);
+                          const glm::vec3 &transmittance, double distance, DenoisingGuides &guides, SampleResult &result);
 // Records the sky behind transparent surfaces.
-void add_sky_guides(const DenoisingGuides &features, SampleResult &result);
+void add_sky_guides(const DenoisingGuides &guides, SampleResult &result);
 
 } // namespace lancer

@@ -20,9 +20,9 @@ public:
 
   void run(std::span<const SampleAddress> addresses, std::span<SampleResult> results, std::vector<PathVertex> *trace) override {
     rays_.clear();
-    slots_.clear();
-    generator_.start(addresses, passes_.wanted(), results, [&](uint32_t slot, const Sampler &) -> Ray & {
-      slots_.push_back(slot);
+    samples_.clear();
+    generator_.start(addresses, passes_.wanted(), results, [&](uint32_t sample, const Sampler &) -> Ray & {
+      samples_.push_back(sample);
       return rays_.emplace_back();
     });
     hits_.resize(rays_.size());
@@ -33,7 +33,7 @@ public:
       if (hits_[i].valid())
         queues_.add(i, hits_[i]);
       else
-        miss(rays_[i], results[slots_[i]]);
+        miss(rays_[i], results[samples_[i]]);
     vertices_ += queues_.size();
     queues_.each([&](std::span<const ShadingQueues::Met> met) {
       for (const ShadingQueues::Met &one : met) {
@@ -53,7 +53,7 @@ private:
     else if (!(scene_.world.hidden_from & RayKind::Camera))
       result.radiance = scene_.lights.environment().radiance(glm::normalize(ray.d), sky_values_, &camera_, &ray.o,
                                                              {.kinds = RayKind::Camera});
-    add_sky_guides(begin_guides(settings_, passes_.features()), result);
+    add_sky_guides(begin_guides(settings_, passes_.guides()), result);
   }
 
   void show_block(std::span<SampleResult> results, std::vector<PathVertex> *trace) {
@@ -67,7 +67,7 @@ private:
     surfaces_.make_opaque();
     surfaces_.describe();
     for (uint32_t lane = 0; lane < surfaces_.count(); ++lane)
-      show(lane, results[slots_[number_[lane]]], trace);
+      show(lane, results[samples_[number_[lane]]], trace);
     surfaces_.clear();
   }
 
@@ -77,7 +77,7 @@ private:
     record_place(scene_, surface, surfaces_.material(lane), t, result);
     record_first_surface(scene_, settings_, surface, get(surfaces_.means().normal, lane), result);
     record_seen(scene_, camera_, settings_, passes_, surface, surfaces_, lane, glm::vec3(1.0f), result);
-    DenoisingGuides guides = begin_guides(settings_, passes_.features());
+    DenoisingGuides guides = begin_guides(settings_, passes_.guides());
     if (guides.open)
       add_denoising_guides(scene_, camera_, surfaces_.mixture(lane), get(surfaces_.surfaces().wo, lane), glm::vec3(0.0f),
                            surfaces_.distance(lane), guides, result);
@@ -96,7 +96,7 @@ private:
   LightPasses passes_;
   std::vector<glm::vec4> sky_values_; // of the world's nodes
   uint32_t number_[kBlockLanes];      // number of the ray of each lane of the block
-  std::vector<uint32_t> slots_;       // rays_[i] belongs to results[slots_[i]]
+  std::vector<uint32_t> samples_;     // rays_[i] belongs to results[samples_[i]]
   std::vector<Ray> rays_;
   std::vector<Hit> hits_;
 };

@@ -69,13 +69,13 @@ bool ClassicIntegrator::run_part(std::span<const SampleAddress> addresses, std::
     next_rays_.clear();
     shade(results);
     for (size_t i = 0; i < rays_.size(); ++i)
-      gather(i, results[branches_[i].slot], trace);
+      gather(i, results[branches_[i].sample], trace);
     counts_.shadow +=
-        shadows_.trace([&](const WaitingLight &waiting, const glm::vec3 &light) { shadow_light_.add(waiting.slot, light); });
+        shadows_.trace([&](const WaitingLight &waiting, const glm::vec3 &light) { shadow_light_.add(waiting.sample, light); });
     shadow_light_.sort();
     for (size_t i = 0; i < rays_.size(); ++i)
       for (const glm::vec3 &light : shadow_light_.of(i))
-        results[branches_[i].slot].radiance += light;
+        results[branches_[i].sample].radiance += light;
     counts_.bounce += next_rays_.size();
     branches_.swap(next_branches_);
     rays_.swap(next_rays_);
@@ -92,11 +92,11 @@ void ClassicIntegrator::generate(std::span<const SampleAddress> addresses, std::
   branches_.clear();
   rays_.clear();
   samplers_.assign(addresses.size(), Sampler(0, 0));
-  generator_.start(addresses, passes_.wanted(), results, [&](uint32_t slot, const Sampler &sampler) -> Ray & {
-    samplers_[slot] = sampler;
+  generator_.start(addresses, passes_.wanted(), results, [&](uint32_t sample, const Sampler &sampler) -> Ray & {
+    samplers_[sample] = sampler;
     Branch &branch = branches_.emplace_back();
-    branch.slot = slot;
-    branch.features = begin_guides(settings_, passes_.features());
+    branch.sample = sample;
+    branch.guides = begin_guides(settings_, passes_.guides());
     return rays_.emplace_back();
   });
   counts_.camera += rays_.size();
@@ -104,7 +104,7 @@ void ClassicIntegrator::generate(std::span<const SampleAddress> addresses, std::
 
 void ClassicIntegrator::miss(const Branch &branch, const glm::dvec3 &eye, const glm::vec3 &direction, SampleResult &result) {
   if (branch.depth == 0)
-    add_sky_guides(branch.features, result);
+    add_sky_guides(branch.guides, result);
   // A transparent film does not show the environment itself, but the environment's pass does.
   if (branch.depth == 0 && settings_.film_transparent) {
     result.alpha -= mean(branch.weight);
@@ -130,9 +130,9 @@ void ClassicIntegrator::gather(size_t number, SampleResult &result, std::vector<
   if (vertex.nothing)
     return;
   add(branch, branch.weight * vertex.emission, false, result);
-  if (branch.features.open)
-    add_denoising_guides(scene_, camera_, features_[number].mixture, features_[number].wo, vertex.transmittance,
-                         hits_[number].t * glm::length(ray.d), branch.features, result);
+  if (branch.guides.open)
+    add_denoising_guides(scene_, camera_, guides_[number].mixture, guides_[number].wo, vertex.transmittance,
+                         hits_[number].t * glm::length(ray.d), branch.guides, result);
   result.radiance += branch.weight * vertex.ambient * ambient_;
   for (const glm::vec3 &light : own_light_.of(number))
     result.radiance += light;
@@ -153,13 +153,13 @@ void ClassicIntegrator::add(const Branch &branch, const glm::vec3 &light, bool e
   const bool hidden = environment && settings_.film_transparent && branch.depth == 0;
   if (!hidden)
     result.radiance += light;
-  if (branch.features.open && !hidden)
-    result.albedo += branch.features.beta * light;
+  if (branch.guides.open && !hidden)
+    result.albedo += branch.guides.beta * light;
   if (branch.depth == 0)
     passes_.add_seen(result, light, environment);
 }
 
-// Returns the unnormalised view direction from the eye to a place p other than the hit. A transparent layer is not the eye.
+// Returns the unnormalised view direction from the eye to a place p other than the hit. A crossing is not the eye.
 glm::dvec3 ClassicIntegrator::view_of(const Branch &branch, const Ray &ray, const glm::dvec3 &p) const {
   if (branch.depth > 0)
     return p - ray.o;
@@ -170,19 +170,19 @@ void ClassicIntegrator::branch_out(size_t number, SampleResult &result) {
   const Branch &branch = branches_[number];
   const Vertex &vertex = lit_[number];
   // Guides follow each branch with its share of the light.
-  const float all = branch.features.open ? mean(vertex.transmittance + vertex.reflected + vertex.refracted) : 0.0f;
+  const float all = branch.guides.open ? mean(vertex.transmittance + vertex.reflected + vertex.refracted) : 0.0f;
   const auto child = [&](const glm::vec3 &part) {
     Branch next = branch;
-    next.features.share *= all > 0.0f ? mean(part) / all : 0.0f;
+    next.guides.share *= all > 0.0f ? mean(part) / all : 0.0f;
     return next;
   };
-  if (vertex.transmittance != glm::vec3(0.0f) && branch.layers < settings_.transparent_bounces) {
+  if (vertex.transmittance != glm::vec3(0.0f) && branch.crossings < settings_.transparent_bounces) {
     const Ray &ray = rays_[number];
     const Hit &hit = hits_[number];
     Branch behind = child(vertex.transmittance);
     behind.passed += hit.t;
     behind.weight *= vertex.transmittance;
-    ++behind.layers;
+    ++behind.crossings;
     push(behind, ray_from(surface_at(scene_.geometry, scene_.slots, ray, hit), ray.d, ray.tmax - hit.t));
   }
   // Beyond the depth limit a ray is black and need not be traced.
@@ -198,7 +198,7 @@ void ClassicIntegrator::spawn(Branch child, const Vertex &vertex, const glm::vec
                               uint32_t kind, SampleResult &result) {
   child.weight *= weight;
   child.kinds = kind;
-  child.layers = 0;
+  child.crossings = 0;
   ++child.depth;
   // Stop a ray whose contribution cannot matter.
   const float share = largest(child.weight);

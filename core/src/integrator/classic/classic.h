@@ -99,13 +99,13 @@ private:
   // A ray of the recursion; all rays of one depth are traced together.
   struct Branch {
     glm::vec3 weight{1.0f}; // throughput
-    uint32_t slot = 0;
+    uint32_t sample = 0;
     uint32_t depth = 0;
     uint32_t kinds = RayKind::Camera; // of the ray
-    uint32_t layers = 0;              // transparent surfaces passed
+    uint32_t crossings = 0;           // transparent surfaces passed
     bool seen = false;                // the first surface has been recorded
-    double passed = 0.0;              // t of the camera ray up to its last layer
-    DenoisingGuides features{};
+    double passed = 0.0;              // t of the camera ray up to its last crossing
+    DenoisingGuides guides{};
   };
   // Results of shading a ray's vertex, kept until its light is summed: vertices are shaded in the order of their code, but a
   // pixel's sum has the order of the rays.
@@ -120,7 +120,7 @@ private:
     glm::vec3 reflected{0.0f}, refracted{0.0f}, mirrored{0.0f}, through{0.0f};
   };
   // Results of shading a vertex that the denoising guides read.
-  struct FeaturesOf {
+  struct GuidesOf {
     Mixture<float> mixture;
     glm::vec3 wo{0.0f};
   };
@@ -180,12 +180,12 @@ private:
   std::vector<CornerLight> corner_light_;
   std::vector<glm::vec4> sky_values_;   // of the world's nodes
   LightByRay own_light_, shadow_light_; // of lamps without occlusion, by Ka; of shadow rays
-  std::vector<Sampler> samplers_;       // per slot
+  std::vector<Sampler> samplers_;       // by number of the sample in the batch
   std::vector<Branch> branches_, next_branches_;
   std::vector<Ray> rays_, next_rays_;
   std::vector<Hit> hits_;
   std::vector<Vertex> lit_; // per ray
-  std::vector<FeaturesOf> features_;
+  std::vector<GuidesOf> guides_;
 };
 
 } // namespace lancer

@@ -21,8 +21,8 @@ void ClassicIntegrator::shade(std::span<SampleResult> results) {
   own_light_.begin(rays_.size());
   shadow_light_.begin(rays_.size());
   lit_.resize(rays_.size());
-  if (passes_.features())
-    features_.resize(rays_.size());
+  if (passes_.guides())
+    guides_.resize(rays_.size());
   for (size_t i = 0; i < rays_.size(); ++i)
     if (hits_[i].valid())
       queues_.add(i, hits_[i]);
@@ -89,7 +89,7 @@ void ClassicIntegrator::cut_holes(std::span<SampleResult> results) {
     seen |= uint32_t(branch_of(lane).depth == 0) << lane;
   const SurfaceStage::Holes holes = surfaces_.cut_holes(seen);
   each_lane(holes.cut,
-            [&](uint32_t lane) { results[branch_of(lane).slot].alpha -= surfaces_.cut_alpha(lane, branch_of(lane).weight); });
+            [&](uint32_t lane) { results[branch_of(lane).sample].alpha -= surfaces_.cut_alpha(lane, branch_of(lane).weight); });
   for (uint32_t lane = 0; lane < surfaces_.count(); ++lane)
     lit_[number_[lane]].nothing = holes.nothing >> lane & 1;
 }
@@ -99,14 +99,14 @@ void ClassicIntegrator::record(std::span<SampleResult> results) {
   surfaces_.describe();
   for (uint32_t lane = 0; lane < surfaces_.count(); ++lane) {
     const uint32_t number = number_[lane];
-    if (passes_.features())
-      features_[number] = {surfaces_.mixture(lane), get(surfaces_.surfaces().wo, lane)};
+    if (passes_.guides())
+      guides_[number] = {surfaces_.mixture(lane), get(surfaces_.surfaces().wo, lane)};
     Branch &branch = branches_[number];
     if (branch.depth > 0 || lit_[number].nothing)
       continue;
     // Position comes from the hit, colour from the shaded vertex.
     const Surface met = surface_at(scene_.geometry, scene_.slots, rays_[number], hits_[number]);
-    SampleResult &result = results[branch.slot];
+    SampleResult &result = results[branch.sample];
     if (!branch.seen && mean(surfaces_.opacity(lane)) >= settings_.alpha_threshold) {
       record_place(scene_, met, surfaces_.material(lane), branch.passed + hits_[number].t, result);
       record_first_surface(scene_, settings_, met, get(surfaces_.means().normal, lane), result);
@@ -142,7 +142,7 @@ void ClassicIntegrator::store_vertex(uint32_t lane) {
 glm::vec2 ClassicIntegrator::light_numbers(const Branch &branch, uint32_t light) const {
   if (generator_.middle())
     return glm::vec2(0.5f);
-  return samplers_[branch.slot].get2(kDimensionLamp + 2 * (branch.depth * uint32_t(scene_.lights.size()) + light));
+  return samplers_[branch.sample].get2(kDimensionLamp + 2 * (branch.depth * uint32_t(scene_.lights.size()) + light));
 }
 
 // Samples a light in all lanes that it may light. p, ng: the places of the hits, and their normals on the viewer's side.
@@ -191,7 +191,7 @@ void ClassicIntegrator::light_block() {
 
 // Queues the light of a lane with its shadow ray.
 void ClassicIntegrator::send_shadow(uint32_t number, uint32_t lane, const glm::vec3 &light) {
-  const WaitingLight waiting{.slot = number_[lane]};
+  const WaitingLight waiting{.sample = number_[lane]};
   const glm::vec3 contribution = branch_of(lane).weight * light;
   if (scene_.lights.no_shadow(number))
     return shadows_.push_lit(waiting, contribution);

@@ -12,7 +12,7 @@ void PathIntegrator::run(std::span<const SampleAddress> addresses, std::span<Sam
   // Start one path per sample.
   film_.begin(addresses, results, trace);
   start(addresses, results);
-  const auto gathered = [&](uint32_t slot) { return film_.gathered(slot); };
+  const auto gathered = [&](uint32_t sample) { return film_.gathered(sample); };
   for (uint32_t turn = 0; !queue_.paths.empty() && !settings_.cancelled(); ++turn) {
     // Find the next hit of every path.
     find_hits();
@@ -21,7 +21,7 @@ void PathIntegrator::run(std::span<const SampleAddress> addresses, std::span<Sam
     // Keep the light before the last bounces, from which the light beyond them is estimated.
     if (last_bounces_.due(turn))
       last_bounces_.note(
-          turn, queue_.paths.size(), settings_.splits.paths > 1, [&](size_t i) { return queue_.paths[i].slot; }, gathered);
+          turn, queue_.paths.size(), settings_.splits.paths > 1, [&](size_t i) { return queue_.paths[i].sample; }, gathered);
     // Add the light samples that no surface occludes.
     counts_.shadow +=
         shadow_.trace([&](const WaitingLight &waiting, const glm::vec3 &light) { film_.add_lit(waiting, light); });
@@ -36,8 +36,8 @@ void PathIntegrator::run(std::span<const SampleAddress> addresses, std::span<Sam
 void PathIntegrator::start(std::span<const SampleAddress> addresses, std::span<SampleResult> results) {
   queue_.clear();
   last_bounces_.begin();
-  camera_.start(addresses, film_.passes.wanted(), results, [&](uint32_t slot, const Sampler &sampler) -> Ray & {
-    queue_.paths.emplace_back(sampler, slot);
+  camera_.start(addresses, film_.passes.wanted(), results, [&](uint32_t sample, const Sampler &sampler) -> Ray & {
+    queue_.paths.emplace_back(sampler, sample);
     return queue_.rays.emplace_back();
   });
   queue_.from.resize(queue_.rays.size());
@@ -249,8 +249,9 @@ void PathIntegrator::go_on() {
 // Sends the rays of a lane for ambient occlusion.
 void PathIntegrator::look_around(uint32_t lane) {
   const Path &path = path_of(lane);
-  film_.add_open(path, occlusion_.send(lane, surface_, scatter_.next(), path.slot, path.beta * recorded_opacity(surface_, lane),
-                                       path.passed_through, path.asking_path(), shadow_));
+  film_.add_open(path,
+                 occlusion_.send(lane, surface_, scatter_.next(), path.sample, path.beta * recorded_opacity(surface_, lane),
+                                 path.passed_through, path.asking_path(), shadow_));
 }
 
 // Continues a path straight through a surface, unless the path has reached its limit of passed surfaces.

@@ -23,7 +23,7 @@ public:
   PathIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
       : scene_(scene), settings_(settings), camera_(camera, settings), film_(scene, camera, settings),
         // Denoising guides sum the distances between surfaces: with them, rays hit absent surfaces, too.
-        hit_(scene, camera, !film_.passes.features()), met_(scene, camera), queues_(scene), textures_(scene),
+        hit_(scene, camera, !film_.passes.guides()), met_(scene, camera), queues_(scene), textures_(scene),
         surface_(scene, camera, settings), light_(scene, &camera), occlusion_(scene, settings),
         shadow_(scene, camera, settings), last_bounces_(settings.max_bounces) {
     // A vertex takes one light and one path, unless its sample splits.

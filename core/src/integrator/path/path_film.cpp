@@ -13,32 +13,32 @@ void PathFilm::begin(std::span<const SampleAddress> addresses, std::span<SampleR
   only_combined_ = passes.only_places() && (!passes.places() || addresses.front().sample > 0);
   results_ = results;
   energy = {};
-  indirect_.assign(results.size() * places(), glm::vec3(0.0f));
+  indirect_.assign(results.size() * sums(), glm::vec3(0.0f));
   shares_.resize(indirect_.size());
   if (!only_combined_ || records_.size() != results.size())
     records_.assign(results.size(), Record());
-  if (passes.features())
+  if (passes.guides())
     guides_.assign(results.size(), begin_guides(settings_, true));
 }
 
 void PathFilm::end() {
-  for (uint32_t slot = 0; slot < results_.size(); ++slot) {
+  for (uint32_t sample = 0; sample < results_.size(); ++sample) {
     if (settings_.clamp_indirect > 0.0f)
-      clamp(slot);
-    for (uint32_t i = 0; i < places(); ++i)
-      results_[slot].radiance += indirect_[slot * places() + i];
+      clamp(sample);
+    for (uint32_t i = 0; i < sums(); ++i)
+      results_[sample].radiance += indirect_[sample * sums() + i];
   }
 }
 
 // Clamps the light of each path of a sample as if the path were the only one: its own light times the number of paths, plus the
 // shared light.
-void PathFilm::clamp(uint32_t slot) {
+void PathFilm::clamp(uint32_t sample) {
   const auto paths = float(settings_.splits.paths);
-  const glm::vec3 shared = before_splitting(slot);
+  const glm::vec3 shared = before_splitting(sample);
   glm::vec3 all(0.0f), kept(0.0f);
   float factor = 1.0f;
   for (uint32_t branch = 0; branch < settings_.splits.paths; ++branch) {
-    const glm::vec3 found = shared + paths * indirect_[slot * places() + branch];
+    const glm::vec3 found = shared + paths * indirect_[sample * sums() + branch];
     float share = 1.0f;
     if (const float top = largest(glm::abs(found)); top > settings_.clamp_indirect) {
       factor = share = settings_.clamp_indirect / top;
@@ -49,24 +49,24 @@ void PathFilm::clamp(uint32_t slot) {
   }
   if (factor == 1.0f)
     return;
-  std::fill_n(indirect_.begin() + ptrdiff_t(slot * places()), places(), glm::vec3(0.0f));
-  indirect_[slot * places()] = kept / paths;
+  std::fill_n(indirect_.begin() + ptrdiff_t(sample * sums()), sums(), glm::vec3(0.0f));
+  indirect_[sample * sums()] = kept / paths;
   // Passes store the sum over the paths: scale them by the mean factor.
   glm::vec3 of_passes(factor);
-  for (int channel = 0; channel < 3 && places() > 1; ++channel)
+  for (int channel = 0; channel < 3 && sums() > 1; ++channel)
     of_passes[channel] = all[channel] != 0.0f ? kept[channel] / all[channel] : 1.0f;
-  passes.scale_indirect(results_[slot], of_passes);
+  passes.scale_indirect(results_[sample], of_passes);
 }
 
 void PathFilm::add(const Path &path, const glm::vec3 &radiance, bool environment) {
-  SampleResult &result = results_[path.slot];
+  SampleResult &result = results_[path.sample];
   // Light that was scattered at most once is direct; clamping never changes it.
   const bool indirect = path.scatterings > 1;
   // A transparent film leaves the environment behind it to the environment's pass: picture and guides have none of it.
   const bool hidden = environment && settings_.film_transparent && path.in_view;
   if (wants_guides(path) && !hidden)
     // The leader stands for all paths that share its weight.
-    result.albedo += float(path.sharers) * guides_[path.slot].beta * radiance;
+    result.albedo += float(path.sharers) * guides_[path.sample].beta * radiance;
   // Light seen through clear glass is in no pass of indirect light: clamp it separately.
   if (path.in_view) {
     const float top = largest(glm::abs(radiance)), limit = settings_.clamp_indirect / float(path.sharers);
@@ -79,20 +79,20 @@ void PathFilm::add(const Path &path, const glm::vec3 &radiance, bool environment
     return;
   }
   if (indirect)
-    indirect_[place(path)] += radiance;
+    indirect_[sum(path)] += radiance;
   else
     result.radiance += radiance;
-  passes.add(result, radiance, shares_[place(path)].of, indirect);
+  passes.add(result, radiance, shares_[sum(path)].of, indirect);
 }
 
 void PathFilm::add_lit(const WaitingLight &waiting, const glm::vec3 &light) {
-  SampleResult &result = results_[waiting.slot];
+  SampleResult &result = results_[waiting.sample];
   if (waiting.occlusion) {
     result.light[kLightOcclusion] += light;
     return;
   }
   if (waiting.indirect)
-    indirect_[waiting.slot * places() + waiting.place] += light;
+    indirect_[waiting.sample * sums() + waiting.sum] += light;
   else
     result.radiance += light;
   passes.add(result, light, waiting.share, waiting.indirect);
@@ -105,7 +105,7 @@ uint32_t PathFilm::record(SurfaceStage &surfaces, std::span<const Path> paths, c
   if (only_combined_)
     return 0;
   // As in Cycles, a surface that ends the path gives only its emission; the guides count its distance, unless it lies behind
-  // too many transparent layers.
+  // too many crossings.
   uint32_t seen = 0, guiding = 0, asked = 0;
   for (uint32_t lane = 0; lane < surfaces.count(); ++lane) {
     const Path &path = paths[number[lane]];
@@ -135,15 +135,16 @@ void PathFilm::record(const Path &path, const SurfaceStage &surfaces, uint32_t l
          surfaces.hit(lane).t);
   // Add the colours of the surface by component.
   for (uint32_t component = 0; component < 3 && passes.components(); ++component)
-    results_[path.slot].light[kLightComponents + 3 * component + 2] += path.beta * get(surfaces.means().shown[component], lane);
+    results_[path.sample].light[kLightComponents + 3 * component + 2] +=
+        path.beta * get(surfaces.means().shown[component], lane);
 }
 
 // t: of the ray, from the last surface that it passed.
 void PathFilm::record(const Path &path, const Surface &surface, const Material &material, const glm::vec3 &normal,
                       const glm::vec3 &opacity, double t) {
-  SampleResult &result = results_[path.slot];
+  SampleResult &result = results_[path.sample];
   // The first surface with enough opacity is recorded.
-  Record &record = records_[path.slot];
+  Record &record = records_[path.sample];
   const bool here = path.leads && !record.seen && mean(opacity) >= settings_.alpha_threshold;
   // Place passes use the first sample of a pixel.
   if (path.leads && !record.seen && path.is_first(settings_.splits.paths))
@@ -162,8 +163,8 @@ void PathFilm::pass_absent(Path &path, const Ray &ray, HitStage &stage, size_t n
   const uint32_t count = stage.passed(number, end);
   if (only_combined_ && !trace_ && count <= path.crossings_left(limit))
     return path.count_crossings(count, limit);
-  for (const Crossing &layer : stage.absent(number)) {
-    const Hit &met = layer.hit;
+  for (const Crossing &crossing : stage.absent(number)) {
+    const Hit &met = crossing.hit;
     if (!closer(met.t, met.instance, met.primitive, end))
       return;
     // A path that has reached its limit ends here.
@@ -191,11 +192,11 @@ void PathFilm::pass_absent(Path &path, const Ray &ray, HitStage &stage, size_t n
 }
 
 bool PathFilm::miss(const Path &path) {
-  SampleResult &result = results_[path.slot];
+  SampleResult &result = results_[path.sample];
   if (awaits_surface(path))
     forget_place(result);
-  if (path.scatterings == 0 && passes.features())
-    add_sky_guides(guides_[path.slot], result);
+  if (path.scatterings == 0 && passes.guides())
+    add_sky_guides(guides_[path.sample], result);
   // A transparent film does not show the environment itself, only the light that it gives. The environment's pass shows both.
   if (!path.in_view || !settings_.film_transparent)
     return true;
@@ -205,20 +206,20 @@ bool PathFilm::miss(const Path &path) {
 
 WaitingLight PathFilm::waiting(const Path &path, const Floats (&share)[2][3], uint32_t lane) const {
   WaitingLight light;
-  light.slot = path.slot;
-  light.place = place_of(path);
+  light.sample = path.sample;
+  light.sum = sum_of(path);
   light.indirect = path.scatterings > 0;
   for (int component = 0; component < 2 && passes.components(); ++component)
-    light.share[component] = path.in_view ? get(share[component], lane) : shares_[place(path)].of[component];
+    light.share[component] = path.in_view ? get(share[component], lane) : shares_[sum(path)].of[component];
   return light;
 }
 
 void PathFilm::set_shares(const Path &path, const Path &next, const Floats (&share)[2][3], uint32_t lane) {
   if (next.in_view || !passes.components())
     return;
-  const Shares before = shares_[place(path)];
+  const Shares before = shares_[sum(path)];
   for (int component = 0; component < 2; ++component)
-    shares_[place(next)].of[component] = path.in_view ? get(share[component], lane) : before.of[component];
+    shares_[sum(next)].of[component] = path.in_view ? get(share[component], lane) : before.of[component];
 }
 
 void PathFilm::trace(const Path &path, const Surface &surface, double t) {
@@ -228,8 +229,8 @@ void PathFilm::trace(const Path &path, const Surface &surface, double t) {
 
 void PathFilm::add_open(const Path &path, const OcclusionStage::Open &open) {
   for (const glm::vec3 &share : open.share)
-    results_[path.slot].light[kLightOcclusion] += share;
-  records_[path.slot].occlusion = open.by_next;
+    results_[path.sample].light[kLightOcclusion] += share;
+  records_[path.sample].occlusion = open.by_next;
 }
 
 void PathFilm::count_occluded(std::span<const Path> paths, std::span<const Ray> rays, std::span<const Hit> hits,
@@ -237,9 +238,9 @@ void PathFilm::count_occluded(std::span<const Path> paths, std::span<const Ray> 
   for (size_t i = 0; i < paths.size() && passes.occlusion(); ++i) {
     if (paths[i].scatterings != 1 || !paths[i].leads)
       continue;
-    const float weight = std::exchange(records_[paths[i].slot].occlusion, 0.0f);
+    const float weight = std::exchange(records_[paths[i].sample].occlusion, 0.0f);
     if (weight > 0.0f && occlusion.occluded(rays[i], hits[i]))
-      results_[paths[i].slot].light[kLightOcclusion] -= glm::vec3(weight);
+      results_[paths[i].sample].light[kLightOcclusion] -= glm::vec3(weight);
   }
 }
 

@@ -28,17 +28,17 @@ public:
   void end();
   // Return the light gathered so far by a path, or by all paths of a sample.
   glm::vec3 gathered(const Path &path) const {
-    const glm::vec3 before = path.split ? before_splitting(path.slot) : glm::vec3(0.0f);
-    return results_[path.slot].radiance + before + indirect_[place(path)];
+    const glm::vec3 before = path.split ? before_splitting(path.sample) : glm::vec3(0.0f);
+    return results_[path.sample].radiance + before + indirect_[sum(path)];
   }
-  glm::vec3 gathered(uint32_t slot) const {
-    glm::vec3 sum = results_[slot].radiance;
-    for (uint32_t i = 0; i < places(); ++i)
-      sum += indirect_[slot * places() + i];
+  glm::vec3 gathered(uint32_t sample) const {
+    glm::vec3 sum = results_[sample].radiance;
+    for (uint32_t i = 0; i < sums(); ++i)
+      sum += indirect_[sample * sums() + i];
     return sum;
   }
-  // Returns the place where a path gathers its light, counted from its sample's first place.
-  uint32_t place_of(const Path &path) const { return path.split ? path.branch : places() - 1; }
+  // Returns the number of the sum of indirect light that a path adds to, among its sample's sums.
+  uint32_t sum_of(const Path &path) const { return path.split ? path.branch : sums() - 1; }
 
   // Adds light that a path transports to the camera: as seen directly while the path is in the camera's view, then as direct or
   // indirect. environment: the light is the world's, which a transparent film hides.
@@ -48,7 +48,7 @@ public:
   // Adds the part of a light sample's contribution that its shadow ray transmits.
   void add_lit(const WaitingLight &waiting, const glm::vec3 &light);
   // Subtracts a share from the alpha of a sample.
-  void cut(const Path &path, float share) { results_[path.slot].alpha -= share; }
+  void cut(const Path &path, float share) { results_[path.sample].alpha -= share; }
 
   // Whether no pass but the picture is requested: records stay unused.
   bool only_combined() const { return only_combined_; }
@@ -61,12 +61,12 @@ public:
   void pass_absent(Path &path, const Ray &ray, HitStage &stage, size_t number, Hit &hit);
   // Whether the first surface is still to come.
   bool awaits_surface(const Path &path) const {
-    return path.in_view && path.leads && !only_combined_ && !records_[path.slot].seen;
+    return path.in_view && path.leads && !only_combined_ && !records_[path.sample].seen;
   }
   // Records that a path passes straight through a surface at t.
   void pass_on(const Path &path, double t) {
     if (!only_combined_ && path.leads)
-      records_[path.slot].depth += t;
+      records_[path.sample].depth += t;
   }
   // Records that a path hits nothing. Returns whether picture or passes show the environment there.
   bool miss(const Path &path);
@@ -79,11 +79,11 @@ public:
   void set_shares(const Path &path, const Path &next, const Floats (&share)[2][3], uint32_t lane);
 
   // Whether a path still looks for the surface of the denoising guides.
-  bool wants_guides(const Path &path) const { return passes.features() && path.leads && guides_[path.slot].open; }
+  bool wants_guides(const Path &path) const { return passes.guides() && path.leads && guides_[path.sample].open; }
   // distance: from the last surface, normalised units.
   void add_guides(const Path &path, const Mixture<float> &mixture, const glm::vec3 &wo, const glm::vec3 &transmittance,
                   double distance) {
-    add_denoising_guides(scene_, camera_, mixture, wo, transmittance, distance, guides_[path.slot], results_[path.slot]);
+    add_denoising_guides(scene_, camera_, mixture, wo, transmittance, distance, guides_[path.sample], results_[path.sample]);
   }
 
   // Ambient occlusion: adds the open share, and keeps what the next ray takes from it.
@@ -96,22 +96,22 @@ public:
   Energy energy; // of the batch
 
 private:
-  // Places of a sample: one for each of its paths and, if there are several, another one for the light found before the split.
-  uint32_t places() const { return settings_.splits.paths > 1 ? settings_.splits.paths + 1 : 1; }
-  uint32_t place(const Path &path) const { return path.slot * places() + place_of(path); }
-  glm::vec3 before_splitting(uint32_t slot) const {
-    return places() > 1 ? indirect_[(slot + 1) * places() - 1] : glm::vec3(0.0f);
+  // Sums of a sample: one for each of its paths and, if there are several, another one for the light found before the split.
+  uint32_t sums() const { return settings_.splits.paths > 1 ? settings_.splits.paths + 1 : 1; }
+  uint32_t sum(const Path &path) const { return path.sample * sums() + sum_of(path); }
+  glm::vec3 before_splitting(uint32_t sample) const {
+    return sums() > 1 ? indirect_[(sample + 1) * sums() - 1] : glm::vec3(0.0f);
   }
-  void clamp(uint32_t slot);
+  void clamp(uint32_t sample);
   void record(const Path &path, const Surface &surface, const Material &material, const glm::vec3 &normal,
               const glm::vec3 &opacity, double t);
   void record(const Path &path, const SurfaceStage &surfaces, uint32_t lane);
   void trace(const Path &path, const Surface &surface, double t);
 
-  // State of a sample for the passes other than Combined. The record stays at the sample's slot while the path moves to other
+  // State of a sample for the passes other than Combined. The record stays with the sample while the path moves to other
   // queues.
   struct Record {
-    double depth = 0.0;     // t of the camera ray up to its last layer
+    double depth = 0.0;     // t of the camera ray up to its last crossing
     bool seen = false;      // the first surface has been recorded
     float occlusion = 0.0f; // kept for the next ray
   };
@@ -129,10 +129,10 @@ private:
   std::vector<PathVertex> *trace_ = nullptr;
   bool only_combined_ = true;
   std::span<SampleResult> results_;
-  // By place.
+  // By number of the sum.
   std::vector<glm::vec3> indirect_;
   std::vector<Shares> shares_;
-  // By slot, like results_.
+  // By number in the batch, like results_.
   std::vector<Record> records_;
   std::vector<DenoisingGuides> guides_; // where passes for denoising are requested
 };
@@ -148,23 +148,23 @@ public:
   explicit LastBounces(uint32_t max_bounces) : max_bounces_(max_bounces) {}
 
   void begin() {
-    slots_.clear();
+    samples_.clear();
     stage_ = 0;
     before_[0] = before_[1] = 0.0;
   }
   // Whether note() must be called in this turn of the queues. Each transparent surface delays a path by one turn. The path's
   // light then counts as that of a later bounce, so the estimate is too large rather than too small.
   bool due(uint32_t turn) const { return turn + 1 >= max_bounces_ && stage_ < 2; }
-  // Stores the sum of the light gathered so far. Must be called after the light of this turn's hits is added. slot(i): returns
-  // the slot of the sample of path i, one of count; shared: several paths may have the same sample; light(slot): returns the
+  // Stores the sum of the light gathered so far. Must be called after the light of this turn's hits is added. sample(i):
+  // returns the sample of path i, one of count; shared: several paths may have the same sample; light(sample): returns the
   // light that the sample has gathered.
-  template <class Slot, class Light> void note(uint32_t turn, size_t count, bool shared, Slot &&slot, Light &&light) {
+  template <class SampleOf, class Light> void note(uint32_t turn, size_t count, bool shared, SampleOf &&sample, Light &&light) {
     if (stage_ == 0)
       for (size_t i = 0; i < count; ++i)
-        slots_.push_back(slot(i));
+        samples_.push_back(sample(i));
     if (stage_ == 0 && shared) {
-      std::sort(slots_.begin(), slots_.end());
-      slots_.erase(std::unique(slots_.begin(), slots_.end()), slots_.end());
+      std::sort(samples_.begin(), samples_.end());
+      samples_.erase(std::unique(samples_.begin(), samples_.end()), samples_.end());
     }
     // With max_bounces of 0, only the light before the last bounce is noted at first.
     stage_ = turn + 1 == max_bounces_ ? 1 : 2;
@@ -182,8 +182,8 @@ private:
   // Skips samples that are not finite, because the film drops them.
   template <class Light> double sum(Light &&light) const {
     double result = 0.0;
-    for (const uint32_t slot : slots_) {
-      const float level = luminance(light(slot));
+    for (const uint32_t sample : samples_) {
+      const float level = luminance(light(sample));
       result += std::isfinite(level) ? double(level) : 0.0;
     }
     return result;
@@ -191,7 +191,7 @@ private:
 
   uint32_t max_bounces_, stage_ = 0;
   double before_[2] = {};
-  std::vector<uint32_t> slots_; // of the unfinished paths
+  std::vector<uint32_t> samples_; // of the unfinished paths
 };
 
 } // namespace lancer

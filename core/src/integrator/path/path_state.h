@@ -9,32 +9,32 @@
 namespace lancer {
 
 struct Path {
-  Path(const Sampler &numbers, uint32_t result) : sampler(numbers), slot(result) {}
+  Path(const Sampler &numbers, uint32_t result) : sampler(numbers), sample(result) {}
 
   Sampler sampler;
   glm::vec3 beta{1.0f};
-  uint32_t slot;        // of the sample's result
+  uint32_t sample;      // number in the batch
   bool split = false;   // the sample has split
   uint32_t branch = 0;  // number among its sample's paths
   uint32_t sharers = 1; // number of paths that share its weight
   bool leads = true; // the leader, chosen uniformly among the branches: it alone records the first surface, guides, occlusion
   uint32_t scatterings = 0;
   uint32_t kinds = RayKind::Camera; // of the ray
-  uint32_t layers = 0;              // transparent surfaces passed since the last scattering
+  uint32_t crossings = 0;           // transparent surfaces passed since the last scattering
   uint32_t passed_through = 0;      // transparent surfaces passed in all
   PathStory story;                  // for nodes that read it
   bool in_view = true;              // since the camera, the path has passed straight on or through clear glass alone
   bool last = false;                // the path ends at the next surface
   double length = 0.0;              // of the whole path, normalised units
 
-  // Returns the number of layers that the path may still pass straight through: up to limit on the whole path, and at least one
-  // unless the path is at its last surface. After these layers, the path ends at the next surface and gets only the light that
+  // Returns the number of surfaces that the path may still pass straight through: up to limit on the whole path, and at least
+  // one unless the path is at its last surface. After these, the path ends at the next surface and gets only the light that
   // this surface emits.
   uint32_t crossings_left(uint32_t limit) const {
-    return last ? 0u : std::min(std::max(limit, passed_through + 1) - passed_through, kMaxCrossings - 1 - layers);
+    return last ? 0u : std::min(std::max(limit, passed_through + 1) - passed_through, kMaxCrossings - 1 - crossings);
   }
   void count_crossings(uint32_t count, uint32_t limit) {
-    layers += count;
+    crossings += count;
     passed_through += count;
     last = passed_through >= limit;
   }
@@ -50,13 +50,13 @@ struct Path {
   void scatter(const glm::vec3 &throughput, uint32_t kind, bool is_diffuse, bool transmitted, bool singular) {
     beta = throughput;
     kinds = kind;
-    layers = 0;
+    crossings = 0;
     ++scatterings;
     story.scatter(is_diffuse, transmitted, singular);
   }
   // pass: probability of passing straight through.
   bool chooses_to_pass(float pass) const {
-    const uint32_t dimension = kDimensionOpacity + 2 * (scatterings * kMaxCrossings + layers);
+    const uint32_t dimension = kDimensionOpacity + 2 * (scatterings * kMaxCrossings + crossings);
     return pass > 0.0f && (pass >= 1.0f || sampler.get1(dimension) < pass);
   }
   // Returns the first dimension of the path's current vertex.

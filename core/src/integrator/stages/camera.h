@@ -40,9 +40,9 @@ public:
   // Whether rays go through the middle of the pixel and of the lens: in a picture of one sample by CLASSIC or NORMALS.
   bool middle() const { return middle_; }
 
-  // Begins every sample: clears its result and calls begin(slot, sampler), which returns the ray to fill. with_light: parts of
-  // the light are requested. A sample without a direction gets no call: outside a panorama's picture it is black and opaque, as
-  // in Cycles.
+  // Begins every sample: clears its result and calls begin(sample, sampler), which returns the ray to fill. with_light: parts
+  // of the light are requested. A sample without a direction gets no call: outside a panorama's picture it is black and opaque,
+  // as in Cycles.
   template <class Begin>
   void start(std::span<const SampleAddress> addresses, bool with_light, std::span<SampleResult> results, Begin &&begin) {
     for (uint32_t first = 0; first < addresses.size(); first += kBlockLanes) {

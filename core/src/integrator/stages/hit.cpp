@@ -105,7 +105,7 @@ bool HitStage::counts(size_t ray, const Hit &hit) {
   Crossing *known = crossings_.find(ray, hit);
   if (known && known->hit.primitive == hit.primitive)
     return false;
-  // Surfaces behind as many layers as the path may still pass are out of reach.
+  // Surfaces behind as many crossings as the path may still pass are out of reach.
   if (!known && crossings_.count_before(ray, hit) >= left_[ray])
     return true;
   if (shader_.is_there(material, hit))

@@ -7,9 +7,9 @@ namespace lancer {
 
 // Light that waits for its shadow ray.
 struct WaitingLight {
-  uint32_t slot = 0, place = 0;                            // of the sample, and the place where its path gathers
-  bool indirect = false;                                   // scattered more than once
-  bool occlusion = false;                                  // no light: the pass of ambient occlusion
+  uint32_t sample = 0, sum = 0; // number of the sample in its batch, and of its sum of indirect light
+  bool indirect = false;        // scattered more than once
+  bool occlusion = false;       // no light: the pass of ambient occlusion
   glm::vec3 share[2] = {glm::vec3(0.0f), glm::vec3(0.0f)}; // diffuse, glossy; the rest is transmission
 };
 
@@ -18,7 +18,7 @@ public:
   explicit LightPasses(const IntegratorSettings &settings)
       : wanted_((settings.passes & kAnyLight) != 0), components_((settings.passes & kAnyComponent) != 0),
         occlusion_((settings.passes & bit(Pass::AmbientOcclusion)) != 0), mist_((settings.passes & bit(Pass::Mist)) != 0),
-        uv_((settings.passes & bit(Pass::Uv)) != 0), features_((settings.passes & kAnyFeature) != 0),
+        uv_((settings.passes & bit(Pass::Uv)) != 0), guides_((settings.passes & kAnyGuide) != 0),
         places_((settings.passes & kPlaces) != 0), only_places_((settings.passes & ~(kPlaces | kAlways)) == 0) {}
 
   // Whether any part of SampleResult::light is requested.
@@ -28,7 +28,7 @@ public:
   bool occlusion() const { return occlusion_; }
   bool mist() const { return mist_; }
   bool uv() const { return uv_; }
-  bool features() const { return features_; }
+  bool guides() const { return guides_; }
   // Whether passes of the first surface's place, which sample 0 decides, are requested; and whether nothing else is requested
   // beside the picture.
   bool places() const { return places_; }
@@ -58,11 +58,11 @@ public:
 private:
   static constexpr uint32_t kAnyLight = 2u * bit(Pass::TransmissionColor) - bit(Pass::Emission);
   static constexpr uint32_t kAnyComponent = 2u * bit(Pass::TransmissionColor) - bit(Pass::DiffuseDirect);
-  static constexpr uint32_t kAnyFeature = bit(Pass::Albedo) | bit(Pass::DenoisingNormal) | bit(Pass::DenoisingDepth);
+  static constexpr uint32_t kAnyGuide = bit(Pass::Albedo) | bit(Pass::DenoisingNormal) | bit(Pass::DenoisingDepth);
   static constexpr uint32_t kPlaces =
       bit(Pass::Depth) | bit(Pass::Position) | bit(Pass::ObjectIndex) | bit(Pass::MaterialIndex);
   static constexpr uint32_t kAlways = bit(Pass::Combined) | bit(Pass::Error);
-  bool wanted_, components_, occlusion_, mist_, uv_, features_, places_, only_places_;
+  bool wanted_, components_, occlusion_, mist_, uv_, guides_, places_, only_places_;
 };
 
 } // namespace lancer

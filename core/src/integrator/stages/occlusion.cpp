@@ -14,9 +14,9 @@ OcclusionStage::OcclusionStage(const Scene &scene, const IntegratorSettings &set
                                                 : std::numeric_limits<double>::infinity()),
       next_rays_look_(!(scene.features & (kFeatureTransparency | kFeatureVisibility))) {}
 
-OcclusionStage::Open OcclusionStage::send(uint32_t lane, const SurfaceStage &surfaces, const ScatterBlock &next, uint32_t slot,
-                                          const glm::vec3 &weight, uint32_t passed, const LightPath<float> &path,
-                                          ShadowStage &shadows) const {
+OcclusionStage::Open OcclusionStage::send(uint32_t lane, const SurfaceStage &surfaces, const ScatterBlock &next,
+                                          uint32_t sample, const glm::vec3 &weight, uint32_t passed,
+                                          const LightPath<float> &path, ShadowStage &shadows) const {
   const Surface surface = surfaces.surface(lane);
   const glm::vec3 ns = get(surfaces.lobes().ns, lane), ng = get(surfaces.lobes().ng, lane);
   const auto push = [&](const glm::vec3 &wi, const glm::vec3 &share) {
@@ -26,7 +26,7 @@ OcclusionStage::Open OcclusionStage::send(uint32_t lane, const SurfaceStage &sur
     // Like a shadow ray, the occlusion ray starts on the curved surface of a smooth mesh.
     Ray ray = shadow_ray(scene_.geometry, surface, ns, ng, around);
     ray.tmax = reach_;
-    shadows.push(ray, {.slot = slot, .occlusion = true}, share, passed);
+    shadows.push(ray, {.sample = sample, .occlusion = true}, share, passed);
     if (shadows.asks_light_path())
       shadows.set_light_path(path);
   };

@@ -40,7 +40,7 @@ public:
   };
   // Queues the occlusion rays of a lane. weight: throughput of the lane; passed: surfaces that its path has passed; path: its
   // Light Path.
-  Open send(uint32_t lane, const SurfaceStage &surfaces, const ScatterBlock &next, uint32_t slot, const glm::vec3 &weight,
+  Open send(uint32_t lane, const SurfaceStage &surfaces, const ScatterBlock &next, uint32_t sample, const glm::vec3 &weight,
             uint32_t passed, const LightPath<float> &path, ShadowStage &shadows) const;
   // Whether a ray that replaces an occlusion ray is occluded.
   bool occluded(const Ray &ray, const Hit &hit) const { return hit.valid() && hit.t * glm::length(ray.d) < reach_; }

@@ -46,8 +46,8 @@ uint64_t ShadowStage::trace_clear() {
       contribution = glm::vec3(0.0f);
     else if (crossings_.count(i) > 0)
       // Multiply the transmittances in order of distance, so that the product does not depend on the order of traversal.
-      for (const Crossing &layer : crossings_.dimming_in_order(i))
-        contribution *= layer.transmittance;
+      for (const Crossing &crossing : crossings_.dimming_in_order(i))
+        contribution *= crossing.transmittance;
   }
   return rays_.size();
 }
@@ -56,7 +56,7 @@ bool ShadowStage::counts(size_t ray, const Hit &hit) {
   Crossing *known = crossings_.find(ray, hit);
   if (known && known->hit.primitive == hit.primitive)
     return false;
-  // No light passes beyond the last layer.
+  // No light passes beyond the last crossing.
   if (!known && waiting_[ray].passed + crossings_.count(ray) >= deepest_)
     return true;
   LightPath<float> path = ray < light_paths_.size() ? light_paths_[ray] : shadow_path();

@@ -18,8 +18,8 @@ MeansWanted means_wanted(const IntegratorSettings &settings) {
   return {.normal = (settings.passes & bit(Pass::Normal)) != 0,
           .matt_normal = passes.occlusion(),
           .shown = passes.components(),
-          .mixture = passes.features(),
-          .blended = settings.blended_features};
+          .mixture = passes.guides(),
+          .blended = settings.blended_guides};
 }
 
 } // namespace

@@ -26,7 +26,7 @@ template <Question q> LANCER_LANE bool left_out(HitFilter *filter, size_t number
 }
 
 // Rays in flight per thread: while one waits for its node or block, the others proceed.
-constexpr uint32_t kSlots = 32;
+constexpr uint32_t kFlights = 32;
 constexpr uint32_t kStackSize = 2 * kBvhTreeStack;
 
 // The input of the float slab test, in a box frame: the ray meets the plane x = b at the parameter b * inverse - shift.
@@ -46,7 +46,7 @@ struct alignas(32) MeshRay {
   RayAxes axes;
 };
 
-struct alignas(64) Slot {
+struct alignas(64) Flight {
   Slab slab;
   const char *arrays[kBvhKinds]; // by kind: the array of its entries
   const char *at;                // current entry
@@ -99,14 +99,14 @@ LANCER_LANE void make_slab(const PlacementFrame &frame, const MeshRay &ray, doub
   end_slab(slab, tmax);
 }
 
-LANCER_LANE void push(Slot &s, float entry, uint32_t child) {
+LANCER_LANE void push(Flight &s, float entry, uint32_t child) {
   s.entries[s.size] = entry;
   s.children[s.size] = child;
   ++s.size;
 }
 
 // Pops the top of the stack and prefetches its data.
-LANCER_LANE void go_on(Slot &s) {
+LANCER_LANE void go_on(Flight &s) {
   const uint32_t child = s.children[--s.size];
   s.kind = child >> kBvhKindShift;
   s.at = s.arrays[s.kind] + size_t{child & kBvhPlace} * kBvhStep;
@@ -115,7 +115,7 @@ LANCER_LANE void go_on(Slot &s) {
 }
 
 // Drops entries behind the best hit.
-LANCER_LANE void shorten(Slot &s) {
+LANCER_LANE void shorten(Flight &s) {
   end_slab(s.slab, s.best.t);
   uint32_t kept = s.base;
   for (uint32_t i = s.base; i < s.size; i += 8)
