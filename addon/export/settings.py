@@ -54,7 +54,7 @@ def export_settings(depsgraph, passes, world, messages):
         transparent_shadows=own.transparent_bounces,
         alpha_threshold=messages.number(depsgraph.view_layer_eval.pass_alpha_threshold, who, "alpha threshold", 0.5, 0.0, 1.0),
         environment_reflections=own.environment_reflections,
-        blended_guides=bpy.app.version >= (5, 2),
+        blended_features=bpy.app.version >= (5, 2),
         features=Features[own.features],
         passes=tuple(sorted({Pass.COMBINED, *passes})),
         threads=render.threads if render.threads_mode == "FIXED" else default_threads,

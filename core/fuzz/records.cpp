@@ -257,7 +257,7 @@ lancer_settings Records::settings() {
   settings.mist_start = bytes_.number(1.0f, 0.0f, 8.0f);
   settings.mist_depth = bytes_.number(8.0f, 0.0f, 8.0f);
   settings.mist_falloff = bytes_.number(2.0f, 0.0f, 4.0f);
-  settings.blended_guides = flag();
+  settings.blended_features = flag();
   settings.features = bytes_.rarely(80) ? bytes_.choice(2) : 0u;
   settings.passes = bytes_.rarely(128) ? (1u << LANCER_PASS_COUNT) - 1 : 1u;
   if (bytes_.rarely(20))

@@ -834,7 +834,7 @@ typedef struct lancer_settings {
   float mist_start;                 /* [amount 5] MIST: distance from the camera */
   float mist_depth;                 /* [amount 25] MIST: distance from mist_start */
   float mist_falloff;               /* [amount 2] MIST: the exponent */
-  uint32_t blended_guides; /* [switch 0] ALBEDO, DENOISING_*: 0 = from one surface, as in Blender up to 5.1; 1 = blended
+  uint32_t blended_features; /* [switch 0] ALBEDO, DENOISING_*: 0 = from one surface, as in Blender up to 5.1; 1 = blended
                                 over surfaces by their share of matt lobes, as in 5.2 */
   uint32_t features;       /* [choice 0 1] LANCER_FEATURES_SCENE: the kernel specialised for the scene; ALL: the general
                               kernel. Same pixels */

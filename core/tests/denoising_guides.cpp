@@ -46,7 +46,7 @@ TEST(DenoisingGuides, OfADiffusePlane) {
 std::unique_ptr<Studio> mirror_and_wall(const lancer_lobe &mirror, bool blended = false) {
   auto studio = std::make_unique<Studio>();
   look_down(*studio);
-  studio->settings.blended_guides = blended;
+  studio->settings.blended_features = blended;
   studio->place(LANCER_PLANE, studio->add({mirror}), turned(45.0, 0, 1, 0));
   studio->place(LANCER_PLANE, studio->add({colored(LANCER_LAMBERT, kWall)}), moved(3, 0, 0) * turned(-90.0, 0, 1, 0));
   studio->render();
@@ -82,7 +82,7 @@ TEST(DenoisingGuides, BlendedOverAMirrorAndWhatItShows) {
 TEST(DenoisingGuides, BlendedSkyIsFarthest) {
   Studio studio;
   look_down(studio);
-  studio.settings.blended_guides = 1;
+  studio.settings.blended_features = 1;
   studio.render();
   EXPECT_EQ(depth(studio), std::numeric_limits<float>::max());
   expect_near(albedo(studio), kSky);

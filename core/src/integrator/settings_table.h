@@ -39,7 +39,7 @@ enum class Pass : uint32_t {
   X(Amount, mist_start, 5.0f, 0xffffffffu)                                                                                     \
   X(Amount, mist_depth, 25.0f, 0xffffffffu)                                                                                    \
   X(Amount, mist_falloff, 2.0f, 0xffffffffu)                                                                                   \
-  X(Switch, blended_guides, false, 0xffffffffu)                                                                                \
+  X(Switch, blended_features, false, 0xffffffffu)                                                                              \
   X(Choice, features, 0u, 1u)                                                                                                  \
   X(Bits, passes, 1u, 16777215u)                                                                                               \
   X(Number, threads, 0u, 1024u)                                                                                                \

@@ -71,7 +71,7 @@ double near_distance(const Camera &camera, const glm::dvec3 &d) {
 DenoisingGuides begin_guides(const IntegratorSettings &settings, bool wanted) {
   DenoisingGuides guides;
   guides.open = wanted;
-  guides.blended = settings.blended_guides;
+  guides.blended = settings.blended_features;
   return guides;
 }
 

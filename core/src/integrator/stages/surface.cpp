@@ -19,7 +19,7 @@ MeansWanted means_wanted(const IntegratorSettings &settings) {
           .matt_normal = passes.occlusion(),
           .shown = passes.components(),
           .mixture = passes.guides(),
-          .blended = settings.blended_guides};
+          .blended = settings.blended_features};
 }
 
 } // namespace
