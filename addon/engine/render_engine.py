@@ -33,9 +33,11 @@ _kept = ByScene()
 # Entries of last_statistics with the library's memory.
 MEMORY = ("geometry_bytes", "accelerator_bytes", "texture_bytes", "film_bytes")
 
+# Seconds between polls.
 _STEP = 0.05
 # Seconds between polls until the first picture is shown.
 _FIRST_STEP = 0.01
+# Seconds between texts of progress.
 _TELL_EVERY = 0.25
 # Share of the time for showing: Blender copies and colour-manages the whole picture each time.
 _SHOW_SHARE = 0.1
@@ -225,23 +227,23 @@ class LancerRenderEngine(bpy.types.RenderEngine):
 
     def _run(self, schedule, show):
         """Render range by range and show the picture at intervals, until the schedule ends or the user cancels."""
-        picture, error = TimeShare(_SHOW_SHARE, _SHOW_EVERY), TimeShare(_ERROR_SHARE, _TELL_EVERY)
+        showing, reading = TimeShare(_SHOW_SHARE, _SHOW_EVERY), TimeShare(_ERROR_SHARE, _TELL_EVERY)
         told = time.monotonic()
         while schedule.start():
-            first = not picture.begun
+            first = not showing.begun
             while True:
-                progress = schedule.wait(_STEP if picture.begun else _FIRST_STEP)
+                progress = schedule.wait(_STEP if showing.begun else _FIRST_STEP)
                 if not progress.finished and self._is_over():
                     schedule.cancel()
                 # Show the first picture as soon as any tile is done, and again when the first sample is complete.
-                elif progress.samples > 0 and (picture.due or first and progress.finished) and not schedule.over:
-                    picture.spend(show)
-                    schedule.reserve = picture.cost + error.cost
-                    schedule.longest = max(schedule.longest, picture.interval)
+                elif progress.samples > 0 and (showing.due or first and progress.finished) and not schedule.over:
+                    showing.spend(show)
+                    schedule.reserve = showing.cost + reading.cost
+                    schedule.longest = max(schedule.longest, showing.interval)
                 if time.monotonic() - told > _TELL_EVERY or progress.finished and schedule.over:
                     told = time.monotonic()
-                    if schedule.samples > 1 and error.due:
-                        error.spend(schedule.look)
+                    if schedule.samples > 1 and reading.due:
+                        reading.spend(schedule.look)
                     self._show_progress(schedule, progress)
                 if progress.finished:
                     break

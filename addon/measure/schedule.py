@@ -11,8 +11,8 @@ import contextlib
 import math
 import time
 
-# Longest range in seconds: ranges have 1, 1, 2, 4 ... samples up to it, then as many samples as fit.
-_LONGEST_INTERVAL = 1.0
+# Longest range in seconds, without target error and time limit: ranges have 1, 1, 2, 4 ... samples up to it, then as many as fit.
+_LONGEST_RANGE = 1.0
 # Samples from which on the error is certain enough for decisions.
 FIRST_LOOK = 16
 # Total probability of ending a render above its target; the first check gets one half of it, the second a quarter, and so on.
@@ -33,7 +33,7 @@ class Schedule:
         self.session = session
         self.settings = session.settings
         self.reason = None  # why the render ended
-        self.longest = _LONGEST_INTERVAL
+        self.longest = _LONGEST_RANGE
         self.samples = 0  # of every pixel, at least
         self.error = None  # the last PictureError that was read
         self.confidence = 1.0 - _MISTAKE

@@ -824,8 +824,8 @@ typedef struct lancer_settings {
   float glass_roughness;        /* [amount 0] alpha */
   uint32_t transparent_bounces; /* [number 8 1024] surfaces that a ray may pass straight through; the next one contributes only
                                    its emission */
-  uint32_t transparent_shadows; /* [number 8 1024] surfaces that a shadow ray may pass, including those that its path has
-                                   passed before */
+  uint32_t transparent_shadows; /* [number 8 1024] surfaces that a shadow ray may pass, PATH: including those that its
+                                   path has passed before */
   float alpha_threshold;        /* [amount 0.5] NORMAL, UV, DEPTH, POSITION and the indices are of the first surface with at
                                    least this opacity */
   uint32_t environment_reflections; /* [switch 0] CLASSIC: a reflected or refracted ray returns the environment's colour without
@@ -836,12 +836,12 @@ typedef struct lancer_settings {
   float mist_falloff;               /* [amount 2] MIST: the exponent */
   uint32_t blended_features; /* [switch 0] ALBEDO, DENOISING_*: 0 = from one surface, as in Blender up to 5.1; 1 = blended
                                 over surfaces by their share of matt lobes, as in 5.2 */
-  uint32_t features;       /* [choice 0 1] LANCER_FEATURES_SCENE: the kernel specialised for the scene; ALL: the general
-                              kernel. Same pixels */
-  uint32_t passes;         /* [bits 1 16777215] 1u << LANCER_PASS_*; COMBINED is always kept */
-  uint32_t threads;        /* [number 0 1024] 0 = one per processor */
-  uint32_t tile_size;      /* [number 0] pixels; 0 = automatic. Changes no pixel */
-  uint32_t refines;        /* [switch 0] lancer_session_refine will be called */
+  uint32_t features;         /* [choice 0 1] LANCER_FEATURES_SCENE: only the work that the scene requires; ALL: work for all
+                                features. Same pixels */
+  uint32_t passes;           /* [bits 1 16777215] 1u << LANCER_PASS_*; COMBINED is always kept */
+  uint32_t threads;          /* [number 0 1024] 0 = one per processor */
+  uint32_t tile_size;        /* [number 0] pixels; 0 = automatic. Changes no pixel */
+  uint32_t refines;          /* [switch 0] lancer_session_refine will be called */
 } lancer_settings;
 
 typedef struct lancer_progress {
@@ -861,7 +861,7 @@ typedef struct lancer_statistics {
   uint64_t triangles, instances, lights;
   uint64_t geometry_bytes, accelerator_bytes, film_bytes;
   char features[512];                 /* features of the scene, separated by blanks */
-  char kernel[64];                    /* the specialisation of the integrator that ran */
+  char kernel[64];                    /* the integrator that ran */
   char instruction_set[32];           /* e.g. "AVX2" */
   uint64_t texture_bytes;             /* images; geometry_bytes covers meshes, instances and lights */
   uint64_t vertices;                  /* of rays on surfaces, without layers that a cut-out removes */

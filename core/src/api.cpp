@@ -81,6 +81,7 @@ lancer_status lancer_scene_add_light(lancer_scene scene, const lancer_light *lig
 
 lancer_status lancer_scene_add_instances(lancer_scene scene, uint32_t count, const lancer_instance *instances,
                                          uint32_t slot_count, const uint32_t *slots, const char *names, size_t names_size) {
+  // Without instances, the array may be null.
   static const char nothing = 0;
   return fill_scene(scene, &nothing, "instances", [&](Description &description) {
     add_instances(description, count, instances, slot_count, slots, names, names_size);
@@ -241,6 +242,7 @@ lancer_status lancer_session_cancel(lancer_session session) {
 
 lancer_status lancer_session_stop(lancer_session session) {
   return guard([&] {
+    // Take no lock, as in lancer_session_cancel().
     session_of(session)->session.stop();
     return LANCER_OK;
   });

@@ -49,7 +49,7 @@ TEST(Lights, KernelsMeetWhatTheGeneralCodeMeets) {
       ways.end[lane] = 12.0 * std::abs(uniform(0));
     }
     for (uint32_t number = 0; number < 60; ++number) {
-      const uint32_t bits = light_kernel().meets(ways, set.lights()[number]);
+      const uint32_t bits = light_kernel().meets(ways, set.lamps()[number]);
       for (int lane = 0; lane < kBlockLanes; ++lane) {
         const LightHit hit = meet(lights[number], o[lane], d[lane] / glm::length(d[lane]));
         const bool here = hit.pdf > 0.0 && (std::isinf(hit.distance) || hit.distance < ways.end[lane]);
@@ -98,7 +98,7 @@ TEST(Lights, LanesThatMeetALampKnowWhatItGivesAndHowItIsChosen) {
     }
     for (uint32_t number = 0; number < kLamps; ++number) {
       MetBlock found{};
-      light_kernel().meet(ways, set.lights()[number], tree, set.binary_tree().place_of(number), found);
+      light_kernel().meet(ways, set.lamps()[number], tree, set.binary_tree().place_of(number), found);
       for (int lane = 0; lane < kBlockLanes; ++lane) {
         const LightHit hit = meet(lights[number], o[lane], d[lane] / glm::length(d[lane]));
         ASSERT_EQ(found.pdf[lane], hit.pdf) << number;

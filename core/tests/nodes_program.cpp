@@ -135,7 +135,7 @@ TEST(NodesProgram, MaterialsScheduleByQuestion) {
   EXPECT_EQ(material.emission_nodes, (Schedule{2}));
   EXPECT_EQ(material.transmittance_nodes, (Schedule{3}));
   EXPECT_EQ(material.displacement_nodes, (Schedule{4}));
-  EXPECT_TRUE(material.emits() && material.transmits() && material.displaces());
+  EXPECT_TRUE(material.emits() && material.is_transparent() && material.displaces());
 }
 
 TEST(NodesProgram, MaterialsThatAreRefused) {

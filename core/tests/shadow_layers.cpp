@@ -47,9 +47,9 @@ std::vector<glm::vec3> one_traversal(const Scene &scene, uint32_t deepest) {
   ShadowStage queue(scene, camera, settings);
   uint32_t sample = 0;
   for (const Question &question : questions(scene))
-    queue.push(question.ray, {.sample = sample++}, glm::vec3(1.0f), question.passed);
+    queue.push(question.ray, {.target = sample++}, glm::vec3(1.0f), question.passed);
   std::vector<glm::vec3> arrived(sample, glm::vec3(0.0f));
-  EXPECT_EQ(queue.trace([&](const WaitingLight &waiting, const glm::vec3 &light) { arrived[waiting.sample] = light; }), sample);
+  EXPECT_EQ(queue.trace([&](const WaitingLight &waiting, const glm::vec3 &light) { arrived[waiting.target] = light; }), sample);
   return arrived;
 }
 
@@ -64,7 +64,7 @@ glm::vec3 from_hit_to_hit(const Scene &scene, Shader &shader, Question question,
       return light;
     const Surface surface = surface_at(scene.geometry, scene.slots, ray, hit);
     const Material &material = scene.materials[surface.material];
-    if (question.passed + layers >= deepest || !material.transmits() || (material.flags & LANCER_MATERIAL_OPAQUE_SHADOWS))
+    if (question.passed + layers >= deepest || !material.is_transparent() || (material.flags & LANCER_MATERIAL_OPAQUE_SHADOWS))
       return glm::vec3(0.0f);
     light *=
         material.transmittance.varies()

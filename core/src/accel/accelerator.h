@@ -1,4 +1,5 @@
-// Ray intersection. One interface, three implementations: brute force, kd-tree, wide BVH.
+// Ray intersection. One interface, three kinds: brute force, kd-tree, wide BVH. commit() wraps each kind in the priority order
+// of coplanar/coplanar_faces.h where the scene has faces in one plane.
 #pragma once
 
 #include "scene/geometry.h"
@@ -13,7 +14,7 @@ namespace lancer {
 enum class AcceleratorKind : uint32_t { Bvh = 0, KdTree = 1, BruteForce = 2 };
 
 // Intersects batches of rays. Immutable, so that any number of threads may use it at once. All kinds return the same hits, bit
-// for bit: a hit depends on ray and primitive only, and closer() breaks ties.
+// for bit: a hit depends on ray and primitive only, and closer() decides between hits of equal t, but for coplanar faces.
 class Accelerator {
 public:
   virtual ~Accelerator() = default;
@@ -41,10 +42,8 @@ private:
 // geometry must outlive the accelerator.
 std::unique_ptr<Accelerator> build_accelerator(AcceleratorKind kind, const Geometry &geometry, const BuildContext &context);
 
-// Single kinds:
-//
-// A tree of instances over one wide tree per mesh. The environment variable LANCER_ISA (scalar, sse4, avx2, avx512) selects a
-// smaller instruction set than the processor has.
+// The builders of each kind follow. A tree of instances over one wide tree per mesh. The environment variable LANCER_ISA
+// (scalar, sse4, avx2, avx512) selects a smaller instruction set than the processor has.
 std::unique_ptr<Accelerator> build_bvh(const Geometry &geometry, const BuildContext &context);
 // A kd-tree of instances over one kd-tree per mesh.
 std::unique_ptr<Accelerator> build_kdtree_accelerator(const Geometry &geometry, const BuildContext &context);

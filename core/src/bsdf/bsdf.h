@@ -73,7 +73,7 @@ template <class F> struct Bsdf {
   union {
     V wo_local[kMaxFrames]; // wo in each of the frames
   };
-  // By lane: the number of the first equal frame, possibly the frame itself.
+  // The number of the first equal frame in each lane, possibly of the frame itself.
   union {
     WordOf<F> first_same[kMaxFrames];
   };
@@ -90,7 +90,7 @@ template <class F> struct Bsdf {
 
   // drawn: the lobe that sampled wi, for the weights of sample(); -1 if wi is not a sample.
   BsdfValue<F> eval(const V &wi, int drawn = -1) const;
-  // For light samples. shapes: bits of the lobes to evaluate. hidden: lanes whose light shows no lobes of a class, by
+  // Evaluates light samples. shapes: bits of the lobes to evaluate. hidden: lanes whose light shows no lobes of a class, by
   // Component; null: none.
   BsdfValue<F> eval_lit(const V &wi, uint32_t shapes = kAllShapes, const B *hidden = nullptr) const;
   // u_lobe selects the lobe, and its remainder selects reflection or refraction; u and v select the direction; all in [0, 1).

@@ -82,7 +82,7 @@ PlaneRules plane_rules(const Scene &scene) {
   PlaneRules rules;
   rules.origin = scene.normalisation.to_normalised(glm::dvec3(0.0));
   for (const uint32_t material : scene.slots) {
-    rules.transparent_slots.push_back(lets_light_through(scene.materials[material]));
+    rules.see_through_slots.push_back(lets_light_through(scene.materials[material]));
     rules.emitting_slots.push_back(scene.materials[material].emits());
   }
   return rules;
@@ -124,7 +124,7 @@ std::shared_ptr<const Scene> commit(Description description, AcceleratorKind kin
   scene->images = std::move(description.images);
   scene->cutouts = make_cutouts(scene->materials, scene->images);
   scene->transparent_instances =
-      find_instances(*scene, [&](const Instance &, uint32_t material) { return scene->materials[material].transmits(); });
+      find_instances(*scene, [&](const Instance &, uint32_t material) { return scene->materials[material].is_transparent(); });
   scene->perforated_instances = find_instances(*scene, [&](const Instance &instance, uint32_t material) {
     return instance.kind == ShapeKind::Mesh && !instance.holdout && scene->cutouts[material].may_end;
   });

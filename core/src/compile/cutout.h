@@ -1,4 +1,4 @@
-// Surfaces that images cut out, such as leaves and fences.
+// Surfaces that are absent at some places by their transmittance, such as leaves and fences that images cut out.
 #pragma once
 
 #include "scene/material.h"

@@ -17,7 +17,7 @@ bool is_glass(const LobeDescription &lobe) {
 }
 
 bool lets_light_through(const Material &material) {
-  return material.transmits() || std::any_of(material.lobes.begin(), material.lobes.end(), is_glass);
+  return material.is_transparent() || std::any_of(material.lobes.begin(), material.lobes.end(), is_glass);
 }
 
 namespace {
@@ -129,7 +129,7 @@ void add_material(const Material &material, Features &features) {
     if (is_glass(lobe))
       features.bits |= kFeatureGlass;
   }
-  if (material.transmits())
+  if (material.is_transparent())
     features.bits |= kFeatureTransparency;
   if (material.emits())
     features.bits |= kFeatureEmitters;

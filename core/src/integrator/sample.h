@@ -72,17 +72,17 @@ enum LightPass : uint32_t {
 // passes.
 struct SampleResult {
   glm::vec3 radiance{0.0f};
-  float alpha = 0.0f; // 1 where the camera stage has made a ray, less what holdouts and a transparent film take
+  float alpha = 0.0f; // 1 from the camera stage, less what holdouts and a transparent film take
   glm::vec3 normal{0.0f};
   glm::vec3 albedo{0.0f};
   glm::vec3 uv{0.0f};
   float mist = 0.0f; // the share of light that mist leaves
-  // Parts of radiance, set only where settings request them; colours are their divisors.
+  // The light passes, set only where settings request them: parts of radiance, occlusion, and the colours that divide parts.
   glm::vec3 light[kLightPasses];
   glm::vec3 denoising_normal{0.0f}; // camera space
   float denoising_depth = 0.0f;
   // The hit of the camera ray.
-  float depth = 1e10f; // scene units along the camera's z; 1e10: no hit
+  float depth = 1e10f; // user's units along the camera's z, of a panorama: distance; 1e10: no hit
   glm::vec3 position{0.0f};
   float object_index = 0.0f, material_index = 0.0f;
 
@@ -103,7 +103,7 @@ struct RayCounts {
   }
 };
 
-// Luminance that settings remove from the picture, summed over samples.
+// Luminance that clamping removes, and that of the last bounces, summed over samples.
 struct Energy {
   double clipped = 0.0;                 // by clamping
   double last = 0.0, before_last = 0.0; // found by the last bounce that is followed, and by the one before
@@ -128,7 +128,7 @@ struct Energy {
   }
 };
 
-// One vertex of a replayed sample, in scene units.
+// One vertex of a replayed sample, in the user's units.
 struct PathVertex {
   glm::dvec3 position{0.0};
   double t = 0.0;
@@ -145,12 +145,12 @@ public:
                    std::vector<PathVertex> *trace) = 0;
   // Sets how samples split in the following batches, for integrators that split.
   virtual void set_splits(const Splits &) {}
-  // Returns the name of the specialisation in use, for the statistics.
-  virtual const char *kernel() const = 0;
+  // Returns the integrator's name, for the statistics.
+  virtual const char *name() const = 0;
+  // Return totals since the start: rays, and vertices on surfaces.
   const RayCounts &counts() const { return counts_; }
-  // Vertices on surfaces.
   uint64_t vertices() const { return vertices_; }
-  // Of the last batch.
+  // Returns the energy of the last batch.
   const Energy &energy() const { return energy_; }
 
 protected:

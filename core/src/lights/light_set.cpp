@@ -17,8 +17,8 @@ constexpr size_t kFew = 4;
 
 LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, size_t instance_count, Environment environment,
                    const BuildContext &context)
-    : lights_(std::move(lights)), emitters_(std::move(emitters)), environment_(std::move(environment)) {
-  for (const Light &light : lights_) {
+    : lamps_(std::move(lights)), emitters_(std::move(emitters)), environment_(std::move(environment)) {
+  for (const Light &light : lamps_) {
     most_before_ = std::max(most_before_, kMostTolerances * light.plane_tolerance);
     switches_.push_back(light.hidden_from | (light.no_shadow ? kNoShadow : 0));
   }
@@ -28,8 +28,8 @@ LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, siz
     switches_.push_back(environment_.hidden_from());
   std::vector<DescribedLight> described;
   described.reserve(size());
-  for (uint32_t i = 0; i < lights_.size(); ++i)
-    described.push_back(describe(lights_[i], i));
+  for (uint32_t i = 0; i < lamps_.size(); ++i)
+    described.push_back(describe(lamps_[i], i));
   for (const Emitter &emitter : emitters_)
     described.push_back(describe_cluster(emitter.bounds(), uint32_t(described.size())));
   // An environment that is visible to the camera alone lights no surface.
@@ -37,7 +37,7 @@ LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, siz
     described.push_back(describe_sky(environment_.mean(), environment_light()));
   // Rays hit only lights that can be chosen: both techniques of multiple importance sampling must cover the same lights.
   std::vector<uint32_t> met;
-  for (uint32_t i = 0; i < lights_.size(); ++i)
+  for (uint32_t i = 0; i < lamps_.size(); ++i)
     if (described[i].met && described[i].bounds.energy > 0.0)
       (described[i].distant() ? always_ : met).push_back(i);
   // Few lights are tested one by one.
@@ -68,11 +68,11 @@ double LightSet::probability(const LightQuery &query, uint32_t light) const {
 
 double LightSet::probability(const Geometry &geometry, const LightQuery &query, const Emitter &emitter, uint32_t face) const {
   const double of_face = emitter.face_probability(geometry, query, face);
-  return of_face > 0.0 ? of_face * probability(query, uint32_t(lights_.size() + (&emitter - emitters_.data()))) : 0.0;
+  return of_face > 0.0 ? of_face * probability(query, uint32_t(lamps_.size() + (&emitter - emitters_.data()))) : 0.0;
 }
 
 size_t LightSet::bytes() const {
-  size_t bytes = environment_.bytes() + lights_.size() * sizeof(Light) +
+  size_t bytes = environment_.bytes() + lamps_.size() * sizeof(Light) +
                  (emitter_of_.size() + switches_.size()) * sizeof(uint32_t) + binary_tree_.bytes() + wide_tree_.bytes();
   std::set<const EmissiveFaces *> counted;
   for (const Emitter &emitter : emitters_) {

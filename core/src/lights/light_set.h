@@ -10,27 +10,27 @@ namespace lancer {
 class LightSet {
 public:
   LightSet() = default;
-  // Described lights come first, then one light per emitting instance, then the environment where it varies. Throws
-  // BuildCancelled.
+  // Described lights come first, then one light per emitting instance, then the environment where Environment::is_light().
+  // Throws BuildCancelled.
   LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, size_t instance_count, Environment environment,
            const BuildContext &context = {});
 
-  size_t size() const { return lights_.size() + emitters_.size() + (environment_.is_light() ? 1 : 0); }
+  size_t size() const { return lamps_.size() + emitters_.size() + (environment_.is_light() ? 1 : 0); }
   bool empty() const { return size() == 0; }
-  const std::vector<Light> &lights() const { return lights_; }
+  const std::vector<Light> &lamps() const { return lamps_; }
   const std::vector<Emitter> &emitters() const { return emitters_; }
   const Environment &environment() const { return environment_; }
   // Whether no light of an emitter can arrive on this side of a surface; returns false for lamps and the environment.
   bool behind(uint32_t light, const glm::dvec3 &p, const glm::vec3 &n) const {
-    const size_t emitter = light - lights_.size();
+    const size_t emitter = light - lamps_.size();
     return emitter < emitters_.size() && emitters_[emitter].bounds().behind(p, glm::dvec3(n));
   }
   // Whether a light that is hidden from these rays still lights some surface.
   static bool lit_by(uint32_t hidden_from) {
     return (~hidden_from & (RayKind::Diffuse | RayKind::Glossy | RayKind::Transmission)) != 0;
   }
-  // The environment's number among the lights; valid only where the environment varies.
-  uint32_t environment_light() const { return uint32_t(lights_.size() + emitters_.size()); }
+  // The environment's number among the lights; valid only where the environment is a light.
+  uint32_t environment_light() const { return uint32_t(lamps_.size() + emitters_.size()); }
   // Return the RayKind bits of the rays that do not see a light, and whether nothing occludes it.
   uint32_t hidden_from(uint32_t light) const { return switches_[light] & ~kNoShadow; }
   bool no_shadow(uint32_t light) const { return switches_[light] & kNoShadow; }
@@ -60,9 +60,9 @@ public:
 private:
   static constexpr uint32_t kNoShadow = 1u << 31;
 
-  std::vector<Light> lights_;
-  // hidden_from() and no_shadow() of all lights. They are read more often than the lights' other members; this array of their
-  // own stays in the cache.
+  std::vector<Light> lamps_;
+  // hidden_from() and no_shadow() of all lights. These bits are read more often than the lights' other members; an array of
+  // their own stays in the cache.
   std::vector<uint32_t> switches_;
   std::vector<Emitter> emitters_;
   std::vector<uint32_t> always_, emitter_of_;

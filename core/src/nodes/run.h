@@ -43,7 +43,7 @@ struct NodeKernel {
   void (*run)(const Program &program, const Schedule &schedule, const NodeBlock &block, NodeLanes *values);
 };
 
-// Each is node_kernel.cpp compiled with LANCER_ISA set to the name.
+// Declares the copies of node_kernel.cpp, each compiled with LANCER_ISA set to its name.
 LANCER_DECLARE_KERNEL(NodeKernel, node_kernel)
 
 // The nodes of materials, at one surface at a time.

@@ -39,8 +39,8 @@ Coverage::Coverage(const Scene &scene, const Camera &camera, double filter_width
 }
 
 void Coverage::add_lamps(const LightSet &lights, const Projection &projection) {
-  for (uint32_t number = 0; number < lights.lights().size(); ++number)
-    if (const DescribedLight lamp = describe(lights.lights()[number], number);
+  for (uint32_t number = 0; number < lights.lamps().size(); ++number)
+    if (const DescribedLight lamp = describe(lights.lamps()[number], number);
         lamp.met && !lamp.distant() && seen_by_camera(lights.hidden_from(number)))
       mark(around(projection, projection.to_camera(), lamp.bounds.low, lamp.bounds.high));
 }
@@ -224,8 +224,8 @@ Background find_background(const Scene &scene, const Camera &camera, const Integ
 bool has_even_background(const Scene &scene, const Camera &camera) {
   if (camera.is_panorama() || scene.lights.environment().varies())
     return false;
-  for (uint32_t number = 0; number < scene.lights.lights().size(); ++number)
-    if (const DescribedLight lamp = describe(scene.lights.lights()[number], number);
+  for (uint32_t number = 0; number < scene.lights.lamps().size(); ++number)
+    if (const DescribedLight lamp = describe(scene.lights.lamps()[number], number);
         lamp.met && lamp.distant() && !(scene.lights.hidden_from(number) & LANCER_RAY_CAMERA))
       return false;
   return true;

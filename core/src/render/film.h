@@ -36,7 +36,7 @@ glm::dvec3 divide_by_color(const glm::dvec3 &light, const glm::dvec3 &color);
 // picture is estimated. All samples of a pixel are points of one sequence. For its first N = 2^k points, let V(N) be the
 // variance of their mean, and A and B the means of the two halves. Then U(N) = E (A - B)^2 / 4 = V(N / 2) - V(N), because each
 // half is scrambled like the whole. U equals V where the variance falls as 1 / N, and exceeds V where the variance falls
-// faster. On twenty scenes, sqrt(U) was mostly 1.00 to 1.10 times the real standard error, and up to 1.8 times where points
+// faster. On twenty scenes, sqrt(U) is mostly 1.00 to 1.10 times the real standard error, and up to 1.8 times where points
 // first become even at 64 samples.
 class Film {
 public:

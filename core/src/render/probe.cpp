@@ -135,13 +135,13 @@ void probe_light(const Scene &scene, uint32_t light, uint32_t count, const doubl
 void probe_light_pdf(const Scene &scene, uint32_t light, uint32_t count, const double *points, const double *wi, float *pdf) {
   check_light(scene, light);
   check_directions(wi, count);
-  const size_t described = scene.lights.lights().size();
+  const size_t described = scene.lights.lamps().size();
   const double infinity = std::numeric_limits<double>::infinity();
   for (uint32_t i = 0; i < count; ++i) {
     const glm::dvec3 p = scene.normalisation.to_normalised(dvec3_at(points, i));
     const glm::dvec3 w = dvec3_at(wi, i);
     if (light < described) {
-      pdf[i] = float(meet(scene.lights.lights()[light], p, w).pdf);
+      pdf[i] = float(meet(scene.lights.lamps()[light], p, w).pdf);
       continue;
     }
     if (light - described >= scene.lights.emitters().size()) {
@@ -155,7 +155,7 @@ void probe_light_pdf(const Scene &scene, uint32_t light, uint32_t count, const d
     ray.o = p;
     ray.d = w;
     Hit hit;
-    for (uint32_t layer = 0; layer < kMaxCrossings; ++layer) {
+    for (uint32_t crossing = 0; crossing < kMaxCrossings; ++crossing) {
       scene.accelerator->closest_hit(std::span(&ray, 1), std::span(&hit, 1));
       if (!hit.valid())
         break;

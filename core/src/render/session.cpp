@@ -12,7 +12,7 @@ namespace lancer {
 namespace {
 
 constexpr uint32_t kTileSize = 32, kSmallestTile = 8, kLargestTile = 256;
-// At the end, threads wait for the last tile. With this many tiles per thread, the wait is about a hundredth of the time.
+// Threads wait for the last tile of a range. With this many tiles per thread, the wait is about a hundredth of the time.
 constexpr uint64_t kTilesEach = 64;
 // Side of the squares whose samples are refined together. Fixed, so that refinement depends on neither tile size nor threads.
 constexpr uint32_t kRefinedSize = 16;
@@ -313,7 +313,7 @@ SessionStatistics Session::statistics() const {
     const std::lock_guard lock(mutex_);
     statistics.splits = splits_;
   }
-  statistics.kernel = workers_.front()->kernel();
+  statistics.kernel = workers_.front()->name();
   return statistics;
 }
 

@@ -47,7 +47,7 @@ struct SessionError {
 
 class Session {
 public:
-  // camera in world units. Throws Error when camera, settings or memory do not allow the film.
+  // camera in the user's units. Throws Error when camera, settings or memory do not allow the film.
   Session(std::shared_ptr<const Scene> scene, const Camera &camera, const IntegratorSettings &settings);
   ~Session();
 
@@ -111,7 +111,7 @@ private:
   double seconds_before_ = 0.0;
   std::chrono::steady_clock::time_point start_;
   bool started_ = false;
-  mutable std::mutex mutex_; // guards the following members
+  mutable std::mutex mutex_; // guards splits_ and end_time_
   Splits splits_;
   std::chrono::steady_clock::time_point end_time_;
   std::atomic<uint32_t> active_{0};

@@ -6,8 +6,8 @@ namespace {
 
 // Paths of a batch: enough to fill the queues without leaving the second-level cache.
 constexpr uint32_t kBatch = 1024;
-// If some pixels of a tile are not covered, a batch takes more samples of the covered pixels. Its results, including those of
-// uncovered pixels, fill at most this many batches.
+// A batch takes more samples of the covered pixels where some pixels of a tile are not covered. The batch's results, including
+// those of uncovered pixels, fill at most this many batches.
 constexpr uint32_t kMostBatches = 2;
 
 // Returns a sample that contains only the hit of the camera ray.

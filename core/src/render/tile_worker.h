@@ -15,7 +15,7 @@ public:
   TileWorker(const Scene &scene, const Camera &camera, const IntegratorSettings &settings);
 
   void set_splits(const Splits &splits) { integrator_->set_splits(splits); }
-  const char *kernel() const { return integrator_->kernel(); }
+  const char *name() const { return integrator_->name(); }
   // Adds the next samples of a tile, up to end, and calls count() after each batch that the film has received. A batch that
   // settings.cancel interrupts is discarded.
   void render(Film &film, Film::Tile &tile, uint32_t end, const Background &background,

@@ -21,13 +21,13 @@ enum class CameraKind : uint32_t {
   Cylindrical = 7
 };
 
-// The camera looks along its local -z, y up. The window is the full image's rectangle: on the plane z = -1 (perspective), at
+// The camera looks along its local -z, y up. The window is the whole picture's rectangle: on the plane z = -1 (perspective), at
 // any depth (orthographic), or as a part of the whole panorama, which is 0 ... 1. The window includes sensor fit, shift and
 // pixel aspect.
 struct Camera {
   Affine to_world;
   CameraKind kind = CameraKind::Perspective;
-  uint32_t width = 0, height = 0; // full image, pixels
+  uint32_t width = 0, height = 0; // whole picture, pixels
   uint32_t x = 0, y = 0;          // lower left pixel of the region
   uint32_t region_width = 0, region_height = 0;
   double left = -1.0, right = 1.0, bottom = -1.0, top = 1.0;
@@ -41,9 +41,9 @@ struct Camera {
   // Multiplies the lengths of the scene by scale.
   void scale_lengths(double scale);
 
-  // Returns the ray through a place on the film. raster: pixels of the full image, (0, 0) the lower left corner; lens: a point
-  // of the lens from aperture(). The direction's component along the axis is 1, so that t is the depth; for panoramas, the
-  // direction is unit. Outside a panorama's field of view there is no ray, and tmax is negative.
+  // Returns the ray through a place on the film. raster: pixels of the whole picture, (0, 0) the lower left corner; lens: a
+  // point of the lens from aperture(). The direction's component along the axis is 1, so that t is the depth; for panoramas,
+  // the direction is unit. Outside a panorama's field of view there is no ray, and tmax is negative.
   Ray ray(const glm::dvec2 &raster, const glm::dvec2 &lens) const;
   // Returns a point of the lens, in units of its radius, for u in [0, 1)^2.
   glm::dvec2 aperture(const glm::vec2 &u) const;

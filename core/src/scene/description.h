@@ -1,4 +1,4 @@
-// The scene before commit: checked copies of the user's records, in the user's units.
+// The description: checked copies of the user's records, in the user's units.
 #pragma once
 
 #include "scene/geometry.h"
@@ -13,7 +13,7 @@
 namespace lancer {
 
 struct Description {
-  Geometry geometry; // instances in world units, to_object not yet set
+  Geometry geometry; // instances in the user's units, to_object not yet set
   std::vector<uint32_t> slots;
   std::vector<Material> materials;
   std::vector<LightDescription> lights;

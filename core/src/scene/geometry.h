@@ -1,4 +1,4 @@
-// Meshes and their instances: in world units in a Description, in the normalised world in a Scene.
+// Meshes and their instances: in the user's units in a Description, in the normalised world in a Scene.
 #pragma once
 
 #include "scene/affine.h"

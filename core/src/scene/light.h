@@ -1,4 +1,4 @@
-// Lights and the world as the user described them: world units, not yet normalised.
+// Lights and the world as the user described them, in the user's units.
 #pragma once
 
 #include "scene/affine.h"

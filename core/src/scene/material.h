@@ -54,7 +54,7 @@ struct Material {
   bool fixed() const { return program.nodes.empty(); } // no node decides anything
   bool emits() const { return layered_emission || emission.varies() || emission.value != glm::vec3(0.0f); }
   bool displaces() const { return displacement.varies() || displacement.value != glm::vec3(0.0f); }
-  bool transmits() const { return transmittance.varies() || transmittance.value != glm::vec3(0.0f); }
+  bool is_transparent() const { return transmittance.varies() || transmittance.value != glm::vec3(0.0f); }
 };
 
 // For a scalar parameter.

@@ -18,7 +18,8 @@ struct Ray {
   double tmin = 0.0;
   glm::dvec3 d{0.0, 0.0, 1.0};
   double tmax = std::numeric_limits<double>::infinity();
-  // The flat primitive on which the ray starts and which it does not hit again; kNone if there is none.
+  // The primitive on which the ray starts; kNone if there is none. A flat one is not hit again; on an exact surface, the place
+  // of the origin is skipped.
   uint32_t skip_instance = kNone;
   uint32_t skip_primitive = kNone;
   // Bits of RayKind: the kind of the ray. A ray passes an object that is hidden from all of its kinds as if the object did
@@ -41,15 +42,15 @@ struct Hit {
 // hit an exact surface again where it leaves it.
 class HitFilter {
 public:
-  // asks: by instance, 0 if every hit counts, without a call.
-  explicit HitFilter(const uint8_t *asks) : instances(asks) {}
+  // asked: by instance, 0 if every hit counts, without a call.
+  explicit HitFilter(const uint8_t *asked) : instances(asked) {}
   // Returns whether a hit of rays[ray] of the batch counts. Called in any order, possibly more than once, for
   // - closest hit: every hit that is closer, by closer(), than the closest that counts, and some that are not;
   // - any hit: all hits of a ray that is not occluded.
   // The result for a hit may depend on earlier calls only if the caller does not depend on the order of hits.
   virtual bool counts(size_t ray, const Hit &hit) = 0;
 
-  const uint8_t *instances;
+  const uint8_t *instances; // by instance: 1 if counts() decides on its hits
 
 protected:
   ~HitFilter() = default;
@@ -60,7 +61,8 @@ struct TraversalCounts {
   uint64_t nodes = 0, triangle_blocks = 0, sphere_blocks = 0, instances = 0;
 };
 
-// Defines "closest" uniquely: smaller t, then smaller instance, then smaller primitive.
+// Defines the closest hit uniquely, but for the order of coplanar faces: smaller t, then smaller instance, then smaller
+// primitive.
 [[gnu::always_inline]] inline bool closer(double t, uint32_t instance, uint32_t primitive, const Hit &best) {
   if (t != best.t)
     return t < best.t;

@@ -69,4 +69,14 @@ bool corner_uvs(const Mesh &mesh, const MeshAttribute *attribute, uint32_t name,
 // Returns interpolated texture coordinates; 0 if there are none. bary: weights of vertices 1 and 2.
 glm::vec2 uv_at(const Mesh &mesh, uint32_t name, uint32_t triangle, const glm::dvec2 &bary);
 
+// Fills a ray that leaves the surface of a hit from an origin off the surface. The ray is written in place.
+inline void write_ray(const Hit &hit, const glm::dvec3 &o, const glm::dvec3 &d, double tmax, uint32_t kinds, Ray &ray) {
+  ray.o = o;
+  ray.d = d;
+  ray.tmax = tmax;
+  ray.skip_instance = hit.instance;
+  ray.skip_primitive = hit.primitive;
+  ray.kinds = kinds;
+}
+
 } // namespace lancer

@@ -90,7 +90,7 @@ LANCER_LANE void trace(const BvhScene &scene, const Ray *rays, Hit *hits, uint8_
       }
       if (next == count)
         return;
-      // Take the next rays: a square of the image if the batch consists of rows of pixels.
+      // Take the next rays: a square of the picture if the batch consists of rows of pixels.
       const size_t left = count - next, taken = left < kPacket ? left : kPacket;
       if (next % (4 * row) == 0 && left < 4 * row)
         row = 4;

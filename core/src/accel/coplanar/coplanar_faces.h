@@ -16,7 +16,7 @@ namespace lancer {
 // Input of the priority order besides the geometry.
 struct PlaneRules {
   glm::dvec3 origin{0.0};                   // of the user's world, in which instances are placed in float
-  std::vector<uint8_t> transparent_slots{}; // by slot: its material is transparent; empty: none is
+  std::vector<uint8_t> see_through_slots{}; // by slot: light passes its material, straight or refracted; empty: none
   std::vector<uint8_t> emitting_slots{};    // by slot: its material emits; empty: none does
 };
 
@@ -122,7 +122,7 @@ CoplanarFaces find_coplanar_faces(const Geometry &geometry, const FaceRounding &
                                   const BuildContext &context);
 
 // Builds an accelerator that applies the priority order. If several faces cover one place of a plane within rounding, a ray
-// from either side hits the first in this order: opaque before transparent, emitting before others, then smaller instance,
+// from either side hits the first in this order: opaque before others, emitting before others, then smaller instance,
 // smaller slot, smaller number. A ray that starts on a face hits no other face of its plane. A scene without such faces gets
 // the accelerator of the kind alone.
 std::unique_ptr<Accelerator> build_accelerator(AcceleratorKind kind, const Geometry &geometry, PlaneRules rules,

@@ -26,7 +26,7 @@ bool is(const Geometry &geometry, const std::vector<uint8_t> &slots, uint32_t nu
 } // namespace
 
 PlaneOrder plane_order(const Geometry &geometry, const PlaneRules &rules, uint32_t instance, uint32_t primitive) {
-  return {is(geometry, rules.transparent_slots, instance, primitive), !face_emits(geometry, rules, instance, primitive),
+  return {is(geometry, rules.see_through_slots, instance, primitive), !face_emits(geometry, rules, instance, primitive),
           instance, slot_of(geometry, instance, primitive), primitive};
 }
 
@@ -43,7 +43,7 @@ PlaneRule::PlaneRule(const Geometry &g, const FaceRounding &r, CoplanarFaces f, 
     for (uint32_t slot = instance.first_slot; slot < instance.first_slot + instance.slot_count; ++slot) {
       const bool emits = !rules.emitting_slots.empty() && rules.emitting_slots[slot];
       shines = shines || emits;
-      hides_light = hides_light || (emits && !rules.transparent_slots.empty() && rules.transparent_slots[slot]);
+      hides_light = hides_light || (emits && !rules.see_through_slots.empty() && rules.see_through_slots[slot]);
     }
     if (instance.kind == ShapeKind::Plane)
       planes.push_back(i);

@@ -35,8 +35,8 @@ public:
       else
         miss(rays_[i], results[samples_[i]]);
     vertices_ += queues_.size();
-    queues_.each([&](std::span<const ShadingQueues::Met> met) {
-      for (const ShadingQueues::Met &one : met) {
+    queues_.each([&](std::span<const ShadingQueues::Queued> met) {
+      for (const ShadingQueues::Queued &one : met) {
         number_[surfaces_.add(rays_[one.number], hits_[one.number], *one.material)] = one.number;
         if (surfaces_.full())
           show_block(results, trace);
@@ -44,7 +44,7 @@ public:
       show_block(results, trace);
     });
   }
-  const char *kernel() const override { return "normals"; }
+  const char *name() const override { return "normals"; }
 
 private:
   void miss(const Ray &ray, SampleResult &result) {

@@ -71,7 +71,7 @@ bool ClassicIntegrator::run_part(std::span<const SampleAddress> addresses, std::
     for (size_t i = 0; i < rays_.size(); ++i)
       gather(i, results[branches_[i].sample], trace);
     counts_.shadow +=
-        shadows_.trace([&](const WaitingLight &waiting, const glm::vec3 &light) { shadow_light_.add(waiting.sample, light); });
+        shadows_.trace([&](const WaitingLight &waiting, const glm::vec3 &light) { shadow_light_.add(waiting.target, light); });
     shadow_light_.sort();
     for (size_t i = 0; i < rays_.size(); ++i)
       for (const glm::vec3 &light : shadow_light_.of(i))

@@ -93,7 +93,7 @@ public:
   ClassicIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings);
 
   void run(std::span<const SampleAddress> addresses, std::span<SampleResult> results, std::vector<PathVertex> *trace) override;
-  const char *kernel() const override { return "classic"; }
+  const char *name() const override { return "classic"; }
 
 private:
   // A ray of the recursion; all rays of one depth are traced together.
@@ -130,7 +130,7 @@ private:
   void shade(std::span<SampleResult> results);
   void put_in_lane(size_t number, const Material &material, std::span<SampleResult> results);
   void shade_block(std::span<SampleResult> results);
-  void cut_holes(std::span<SampleResult> results);
+  void cut_holdouts(std::span<SampleResult> results);
   void record(std::span<SampleResult> results);
   void store_vertex(uint32_t lane);
   void sample(uint32_t number, const Doubles (&p)[3], const Floats (&ng)[3]);

@@ -27,8 +27,8 @@ void ClassicIntegrator::shade(std::span<SampleResult> results) {
     if (hits_[i].valid())
       queues_.add(i, hits_[i]);
   vertices_ += queues_.size();
-  queues_.each([&](std::span<const ShadingQueues::Met> met) {
-    for (const ShadingQueues::Met &one : met)
+  queues_.each([&](std::span<const ShadingQueues::Queued> met) {
+    for (const ShadingQueues::Queued &one : met)
       put_in_lane(one.number, *one.material, results);
     shade_block(results);
   });
@@ -68,7 +68,7 @@ void ClassicIntegrator::shade_block(std::span<SampleResult> results) {
       way = surfaces_.surfaces().length[lane] + (branch.depth == 0 ? 0.0 : branch.passed * unit);
     return surfaces_.view(lane, way, {.kinds = branch.kinds, .depth = float(branch.depth)});
   });
-  cut_holes(results);
+  cut_holdouts(results);
   surfaces_.build_lobes();
   if (!only_combined_)
     record(results);
@@ -83,11 +83,11 @@ void ClassicIntegrator::shade_block(std::span<SampleResult> results) {
 }
 
 // Cuts holdouts out of the camera's view.
-void ClassicIntegrator::cut_holes(std::span<SampleResult> results) {
+void ClassicIntegrator::cut_holdouts(std::span<SampleResult> results) {
   uint32_t seen = 0;
   for (uint32_t lane = 0; lane < surfaces_.count(); ++lane)
     seen |= uint32_t(branch_of(lane).depth == 0) << lane;
-  const SurfaceStage::Holes holes = surfaces_.cut_holes(seen);
+  const SurfaceStage::Holes holes = surfaces_.cut_holdouts(seen);
   each_lane(holes.cut,
             [&](uint32_t lane) { results[branch_of(lane).sample].alpha -= surfaces_.cut_alpha(lane, branch_of(lane).weight); });
   for (uint32_t lane = 0; lane < surfaces_.count(); ++lane)
@@ -151,9 +151,9 @@ void ClassicIntegrator::sample(uint32_t number, const Doubles (&p)[3], const Flo
   uint32_t asking = 0;
   for (uint32_t lane = 0; lane < surfaces_.count(); ++lane)
     asking |= uint32_t(!lights.behind(number, get(p, lane), get(ng, lane))) << lane;
-  if (number >= lights.lights().size() && !LightSet::lit_by(lights.hidden_from(number)))
+  if (number >= lights.lamps().size() && !LightSet::lit_by(lights.hidden_from(number)))
     asking = 0;
-  if (number >= lights.lights().size() || has_extent(lights.lights()[number]))
+  if (number >= lights.lamps().size() || has_extent(lights.lamps()[number]))
     each_lane(asking, [&](uint32_t lane) {
       const glm::vec2 u = light_numbers(branch_of(lane), number);
       numbers_.of[kVertexLight][lane] = u.x;
@@ -164,7 +164,7 @@ void ClassicIntegrator::sample(uint32_t number, const Doubles (&p)[3], const Flo
 
 // Computes the light of the samples at the places of the lanes.
 void ClassicIntegrator::illuminate(uint32_t number) {
-  const auto &lamps = scene_.lights.lights();
+  const auto &lamps = scene_.lights.lamps();
   static constexpr ClassicLight plain;
   kernel_.illuminate(surfaces_.surfaces(), surfaces_.lobes(), light_.samples(),
                      number < lamps.size() ? lamps[number].classic : plain, scene_.lights.hidden_from(number), lit_block_,
@@ -173,7 +173,7 @@ void ClassicIntegrator::illuminate(uint32_t number) {
 
 // Returns the light of a lamp that a lane's Ka reflects without occlusion.
 glm::vec3 ClassicIntegrator::own_light(uint32_t number, uint32_t lane, float share) const {
-  return branch_of(lane).weight * lit_[number_[lane]].ambient * scene_.lights.lights()[number].classic.ambient_color *
+  return branch_of(lane).weight * lit_[number_[lane]].ambient * scene_.lights.lamps()[number].classic.ambient_color *
          get(irradiance_.irradiance, lane) * share;
 }
 
@@ -181,7 +181,7 @@ void ClassicIntegrator::light_block() {
   for (uint32_t number = 0; number < scene_.lights.size(); ++number) {
     sample(number, surfaces_.surfaces().p, surfaces_.lobes().ng);
     illuminate(number);
-    each_lane(number < scene_.lights.lights().size() ? irradiance_.there : 0, [&](uint32_t lane) {
+    each_lane(number < scene_.lights.lamps().size() ? irradiance_.there : 0, [&](uint32_t lane) {
       if (lit_[number_[lane]].ambient != glm::vec3(0.0f))
         own_light_.add(number_[lane], own_light(number, lane, kInvPi));
     });
@@ -191,7 +191,7 @@ void ClassicIntegrator::light_block() {
 
 // Queues the light of a lane with its shadow ray.
 void ClassicIntegrator::send_shadow(uint32_t number, uint32_t lane, const glm::vec3 &light) {
-  const WaitingLight waiting{.sample = number_[lane]};
+  const WaitingLight waiting{.target = number_[lane]};
   const glm::vec3 contribution = branch_of(lane).weight * light;
   if (scene_.lights.no_shadow(number))
     return shadows_.push_lit(waiting, contribution);
@@ -230,7 +230,7 @@ void ClassicIntegrator::light_corners() {
         const float weight = float(corner == 0 ? 1.0 - hit.u - hit.v : corner == 1 ? hit.u : hit.v);
         CornerLight &of = corner_light_[(number * 3 + corner) * kBlockLanes + lane];
         of.light = weight * get(lit_block_.contribution, lane);
-        if (number < scene_.lights.lights().size())
+        if (number < scene_.lights.lamps().size())
           of.own = own_light(number, lane, kInvPi * weight);
       });
     }

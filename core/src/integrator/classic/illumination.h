@@ -38,7 +38,7 @@ template <class F> LANCER_LANE Vector3<F> classic_irradiance(const ClassicLight 
   const Double3Of<F> physical = widen(sample.radiance) / sample.pdf;
   if (light.falloff == Falloff::Physical)
     return narrow(physical);
-  // Multiply by the squared distance in world units, then apply the light's attenuation.
+  // Multiply by the squared distance in the user's units, then apply the light's attenuation.
   const D infinity(std::numeric_limits<double>::infinity()), d = sample.distance / D(light.world_unit);
   D ratio = infinity;
   if (light.radius > 0.0)

@@ -49,7 +49,7 @@ void PathIntegrator::start(std::span<const SampleAddress> addresses, std::span<S
 void PathIntegrator::find_hits() {
   // Let rays pass absent surfaces, up to the limit of each path.
   left_.clear();
-  for (size_t i = 0; i < queue_.paths.size() && hit_.passes(); ++i)
+  for (size_t i = 0; i < queue_.paths.size() && hit_.crosses(); ++i)
     left_.push_back(queue_.paths[i].crossings_left(settings_.transparent_bounces));
   hit_.find(queue_.rays, left_, hits_);
   for (size_t i = 0; i < left_.size(); ++i)
@@ -59,7 +59,7 @@ void PathIntegrator::find_hits() {
 
 void PathIntegrator::shade() {
   next_.clear();
-  // Add lamps and the sky; sort the hits into queues.
+  // Add lamps; sort the hits into queues; add the environment.
   add_lamps();
   film_.count_occluded(queue_.paths, queue_.rays, hits_, occlusion_);
   missed_.clear();
@@ -69,10 +69,10 @@ void PathIntegrator::shade() {
       queues_.add(i, hits_[i]);
     else if (film_.miss(queue_.paths[i]) && queue_.paths[i].shows_light(scene_.world.hidden_from))
       missed_.push_back(i);
-  add_sky();
+  add_environment();
   // Shade the hits in blocks, one class of materials after the other.
   vertices_ += queues_.size();
-  queues_.each([&](std::span<const ShadingQueues::Met> met) {
+  queues_.each([&](std::span<const ShadingQueues::Queued> met) {
     for (size_t i = 0; i < met.size(); ++i) {
       if (i + 1 < met.size())
         textures_.ahead(hits_[met[i + 1].number]);
@@ -94,7 +94,7 @@ void PathIntegrator::add_lamps() {
 }
 
 // Adds the environment that paths see behind all surfaces.
-void PathIntegrator::add_sky() {
+void PathIntegrator::add_environment() {
   const Environment &environment = scene_.lights.environment();
   for (size_t i = 0; i < missed_.size() && !environment.varies(); ++i)
     film_.add(queue_.paths[missed_[i]], queue_.paths[missed_[i]].beta * environment.constant(), true);
@@ -113,16 +113,17 @@ void PathIntegrator::add_sky() {
   }
 }
 
-// Adds a hit to the block, unless it ends its path and adds nothing to the picture, which alone is requested.
+// Adds a hit to the block, unless it ends its path and adds nothing to the picture, which alone this batch fills. max_bounces
+// counts the scatterings after the first.
 void PathIntegrator::put_in_lane(size_t number, const Material &material) {
   const Path &path = queue_.paths[number];
   const Hit &hit = hits_[number];
   const bool ends = path.last || path.scatterings > settings_.max_bounces;
-  if (ends && film_.only_combined() && !material.emits() && !material.transmits() &&
+  if (ends && film_.only_combined() && !material.emits() && !material.is_transparent() &&
       !scene_.geometry.instances[hit.instance].holdout)
     return;
   const uint32_t lane = surface_.add(queue_.rays[number], hit, material, ends);
-  number_[lane] = number;
+  path_[lane] = number;
   leader_[lane] = 0;
   ends_ |= uint32_t{ends} << lane;
   put(path.beta, beta_, lane);
@@ -141,10 +142,10 @@ void PathIntegrator::shade_block() {
     return surface_.view(lane, path.length + t * unit,
                          path.light_path((t - surface_.ray(lane).tmin) * unit / scene_.normalisation.scale));
   });
-  cut_holes();
+  cut_holdouts();
   surface_.build_lobes();
   // Fill the passes, and add the light that the surfaces emit.
-  occlusion_asked_ = film_.record(surface_, queue_.paths, number_, ends_, nothing_);
+  occlusion_asked_ = film_.record(surface_, queue_.paths, path_, ends_, nothing_);
   for (uint32_t lane = 0; lane < count; ++lane)
     if (!(nothing_ >> lane & 1))
       add_emission(lane);
@@ -159,11 +160,11 @@ void PathIntegrator::shade_block() {
 }
 
 // Cuts holdouts out of the camera's view.
-void PathIntegrator::cut_holes() {
+void PathIntegrator::cut_holdouts() {
   uint32_t seen = 0;
   for (uint32_t lane = 0; lane < surface_.count(); ++lane)
     seen |= uint32_t{path_of(lane).in_view} << lane;
-  const SurfaceStage::Holes holes = surface_.cut_holes(seen);
+  const SurfaceStage::Holes holes = surface_.cut_holdouts(seen);
   each_lane(holes.cut, [&](uint32_t lane) { film_.cut(path_of(lane), surface_.cut_alpha(lane, path_of(lane).beta)); });
   nothing_ = holes.nothing;
 }
@@ -173,7 +174,7 @@ void PathIntegrator::add_emission(uint32_t lane) {
   const Path &path = path_of(lane);
   const glm::vec3 emission = surface_.emission(lane);
   if (emission != glm::vec3(0.0f))
-    film_.add(path, path.beta * emission * met_.emission_weight(queue_.from[number_[lane]], surface_.surface(lane)), false);
+    film_.add(path, path.beta * emission * met_.emission_weight(queue_.from[path_[lane]], surface_.surface(lane)), false);
   if (!path.last && film_.wants_guides(path))
     film_.add_guides(path, surface_.mixture(lane), get(surface_.surfaces().wo, lane), surface_.transmittance(lane),
                      surface_.distance(lane));
@@ -266,7 +267,7 @@ void PathIntegrator::pass_straight(uint32_t lane) {
   path.length += surface_.distance(lane);
   path.count_crossings(1, settings_.transparent_bounces);
   next_.paths.push_back(path);
-  next_.from.push_back(queue_.from[number_[lane]]);
+  next_.from.push_back(queue_.from[path_[lane]]);
   next_.from.back().passed += surface_.distance(lane);
   next_.rays.push_back(ray_from(surface_.surface(lane), ray.d, ray.tmax - hit.t));
   next_.rays.back().kinds = path.kinds;

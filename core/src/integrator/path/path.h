@@ -36,7 +36,7 @@ public:
     settings_.splits = splits;
     film_.set_splits(splits);
   }
-  const char *kernel() const override { return "path"; }
+  const char *name() const override { return "path"; }
 
 private:
   // Paths on their way: paths[i] goes along rays[i], which left its last scattering from[i].
@@ -56,10 +56,10 @@ private:
   void find_hits();
   void shade();
   void add_lamps();
-  void add_sky();
+  void add_environment();
   void put_in_lane(size_t number, const Material &material);
   void shade_block();
-  void cut_holes();
+  void cut_holdouts();
   void add_emission(uint32_t lane);
   void split();
   void light();
@@ -69,7 +69,7 @@ private:
   void pass_straight(uint32_t lane);
   void scatter(uint32_t lane, uint32_t branch);
 
-  const Path &path_of(uint32_t lane) const { return queue_.paths[number_[lane]]; }
+  const Path &path_of(uint32_t lane) const { return queue_.paths[path_[lane]]; }
 
   const Scene &scene_;
   IntegratorSettings settings_;
@@ -93,7 +93,7 @@ private:
   std::vector<uint32_t> left_; // surfaces that each path may still pass
   std::vector<size_t> missed_; // numbers of the paths that see the environment
   // The block, by lane.
-  size_t number_[kBlockLanes];   // of the path
+  size_t path_[kBlockLanes];     // of the path
   uint32_t leader_[kBlockLanes]; // number of the leader among the branches
   Floats beta_[3];
   Doubles lights_, paths_; // sampled at the vertex

@@ -86,13 +86,13 @@ void PathFilm::add(const Path &path, const glm::vec3 &radiance, bool environment
 }
 
 void PathFilm::add_lit(const WaitingLight &waiting, const glm::vec3 &light) {
-  SampleResult &result = results_[waiting.sample];
+  SampleResult &result = results_[waiting.target];
   if (waiting.occlusion) {
     result.light[kLightOcclusion] += light;
     return;
   }
   if (waiting.indirect)
-    indirect_[waiting.sample * sums() + waiting.sum] += light;
+    indirect_[waiting.target * sums() + waiting.sum] += light;
   else
     result.radiance += light;
   passes.add(result, light, waiting.share, waiting.indirect);
@@ -206,7 +206,7 @@ bool PathFilm::miss(const Path &path) {
 
 WaitingLight PathFilm::waiting(const Path &path, const Floats (&share)[2][3], uint32_t lane) const {
   WaitingLight light;
-  light.sample = path.sample;
+  light.target = path.sample;
   light.sum = sum_of(path);
   light.indirect = path.scatterings > 0;
   for (int component = 0; component < 2 && passes.components(); ++component)

@@ -40,8 +40,8 @@ public:
   // Returns the number of the sum of indirect light that a path adds to, among its sample's sums.
   uint32_t sum_of(const Path &path) const { return path.split ? path.branch : sums() - 1; }
 
-  // Adds light that a path transports to the camera: as seen directly while the path is in the camera's view, then as direct or
-  // indirect. environment: the light is the world's, which a transparent film hides.
+  // Adds light that a path transports to the camera: as seen directly while the path is in the camera's view, then as direct
+  // light, and after a second scattering as indirect. environment: the light is the world's, which a transparent film hides.
   void add(const Path &path, const glm::vec3 &radiance, bool environment);
   // Returns the record of a lane's light sample that waits for its shadow ray. share: LitBlock::share.
   WaitingLight waiting(const Path &path, const Floats (&share)[2][3], uint32_t lane) const;
@@ -50,7 +50,7 @@ public:
   // Subtracts a share from the alpha of a sample.
   void cut(const Path &path, float share) { results_[path.sample].alpha -= share; }
 
-  // Whether no pass but the picture is requested: records stay unused.
+  // Whether this batch fills no pass but the picture: records stay unused.
   bool only_combined() const { return only_combined_; }
   // Fills the passes of a block's surfaces that the camera sees. number: of each lane's path; ends, nothing: bits of lanes that
   // scatter no light, and where a hole has left nothing. Returns the lanes that ask for ambient occlusion.
@@ -68,14 +68,16 @@ public:
     if (!only_combined_ && path.leads)
       records_[path.sample].depth += t;
   }
-  // Records that a path hits nothing. Returns whether picture or passes show the environment there.
+  // Subtracts the share of a transparent film from the alpha of a path that hits nothing. Returns whether picture or passes
+  // show the environment there.
   bool miss(const Path &path);
 
   // Whether a path stays in the camera's view by its lane's next ray: the view continues through clear glass.
   bool stays_in_view(const ScatterBlock &next, uint32_t lane) const {
     return (next.transmitted >> lane & 1) && !(next.diffuse >> lane & 1) && settings_.clear_glass(next.alpha2[lane]);
   }
-  // Sets the shares of a path's next one. Those of the first scattering are kept; share: ScatterBlock::share.
+  // Sets the shares of `next`, into which `path` is scattered. The shares of the first scattering are kept; share:
+  // ScatterBlock::share.
   void set_shares(const Path &path, const Path &next, const Floats (&share)[2][3], uint32_t lane);
 
   // Whether a path still looks for the surface of the denoising guides.
@@ -129,10 +131,10 @@ private:
   std::vector<PathVertex> *trace_ = nullptr;
   bool only_combined_ = true;
   std::span<SampleResult> results_;
-  // By number of the sum.
+  // Members indexed by the number of a sum.
   std::vector<glm::vec3> indirect_;
   std::vector<Shares> shares_;
-  // By number in the batch, like results_.
+  // Members indexed by the number of a sample in the batch, like results_.
   std::vector<Record> records_;
   std::vector<DenoisingGuides> guides_; // where passes for denoising are requested
 };

@@ -9,7 +9,7 @@ CameraStage::CameraStage(const Camera &camera, const IntegratorSettings &setting
       middle_(settings.kind() != IntegratorKind::Path && settings.samples == 1),
       plain_(!middle_ && !camera.is_panorama() && (!(camera.lens_radius > 0.0) || camera.aperture_blades < 3)),
       kernel_(camera_kernel()) {
-  film_.key = hash(settings.seed);
+  addresses_.key = hash(settings.seed);
 }
 
 uint32_t CameraStage::aim(std::span<const SampleAddress> addresses) {
@@ -23,17 +23,17 @@ uint32_t CameraStage::aim(std::span<const SampleAddress> addresses) {
   uint32_t sample = ~addresses[0].sample, digits[kDimensionVertex] = {};
   for (uint32_t lane = 0; lane < addresses.size(); ++lane) {
     // The region's place in the image is part of the address: a border render repeats the full image's numbers.
-    film_.x[lane] = camera_.x + addresses[lane].x;
-    film_.y[lane] = camera_.y + addresses[lane].y;
+    addresses_.x[lane] = camera_.x + addresses[lane].x;
+    addresses_.y[lane] = camera_.y + addresses[lane].y;
     if (addresses[lane].sample != sample) {
       sample = addresses[lane].sample;
       for (uint32_t i = 0; i < kDimensionVertex; ++i)
         digits[i] = sobol::reversed_point(sample, kDimensionPixel + i);
     }
     for (uint32_t i = 0; i < kDimensionVertex; ++i)
-      film_.reversed_point[i][lane] = digits[i];
+      addresses_.reversed_point[i][lane] = digits[i];
   }
-  kernel_.rays(camera_, filter_.table(), film_, rays_);
+  kernel_.rays(camera_, filter_.table(), addresses_, rays_);
   return (1u << addresses.size()) - 1u;
 }
 

@@ -1,7 +1,7 @@
-// From addresses of samples to camera rays, a block at a time.
+// Camera rays for addresses of samples, a block at a time.
 //
-// In: pixels of the region and numbers of samples, from an integrator. Out: rays in the normalised world, for the hit stage,
-// and the sampler of each sample. Callers: all integrators.
+// In: pixels of the region and numbers of samples, from an integrator. Out: rays in the normalised world, for the search of
+// their hits; the sampler of each sample; results, cleared, with alpha 1. Callers: all integrators.
 #pragma once
 
 #include "integrator/sample.h"
@@ -13,8 +13,8 @@
 
 namespace lancer {
 
-// Samples in lanes: pixels of the full image, and the reversed points of the samples in the dimensions of pixel and lens.
-struct alignas(64) FilmBlock {
+// Samples in lanes: pixels of the whole picture, and the reversed points of the samples in the dimensions of pixel and lens.
+struct alignas(64) AddressBlock {
   Words x, y, reversed_point[kDimensionVertex];
   uint32_t key = 0; // hash of the seed
 };
@@ -29,7 +29,7 @@ struct alignas(64) CameraBlock {
 struct CameraKernel {
   const char *name;
   // Makes the rays of flat pictures through a pinhole or a round lens: the same bits as Sampler, PixelFilter and Camera::ray().
-  void (*rays)(const Camera &camera, const FilterTable &filter, const FilmBlock &film, CameraBlock &rays);
+  void (*rays)(const Camera &camera, const FilterTable &filter, const AddressBlock &addresses, CameraBlock &rays);
 };
 LANCER_DECLARE_KERNEL(CameraKernel, camera_kernel)
 
@@ -73,7 +73,7 @@ private:
   uint32_t seed_;
   bool middle_, plain_; // plain: kernels support the camera
   const CameraKernel &kernel_;
-  FilmBlock film_{};
+  AddressBlock addresses_{};
   CameraBlock rays_{};
 };
 

@@ -11,16 +11,16 @@ namespace {
 
 LANCER_LANE D to_double(U a) { return widen(to_float(a >> 16)) * D(65536.0) + widen(to_float(a & U(0xffffu))); }
 
-[[gnu::flatten]] void rays(const Camera &camera, const FilterTable &filter, const FilmBlock &film, CameraBlock &rays) {
+[[gnu::flatten]] void rays(const Camera &camera, const FilterTable &filter, const AddressBlock &addresses, CameraBlock &rays) {
   for (int first = 0; first < kBlockLanes; first += kLanes) {
     // Sample a place on the film by the pixel filter.
-    const U x = load(film.x + first), y = load(film.y + first);
-    const U pixel = hash_combine(hash_combine(U(film.key), x), y);
+    const U x = load(addresses.x + first), y = load(addresses.y + first);
+    const U pixel = hash_combine(hash_combine(U(addresses.key), x), y);
     store(rays.pixel + first, pixel);
     F u[kDimensionVertex];
     const uint32_t dimensions = camera.lens_radius > 0.0 ? kDimensionVertex : kDimensionLens;
     for (uint32_t i = 0; i < dimensions; ++i)
-      u[i] = scrambled(load(film.reversed_point[i] + first), pixel, i);
+      u[i] = scrambled(load(addresses.reversed_point[i] + first), pixel, i);
     const Vector2<D> raster{(to_double(x) + D(0.5)) + widen(sample_filter(filter, u[kDimensionPixel])),
                             (to_double(y) + D(0.5)) + widen(sample_filter(filter, u[kDimensionPixel + 1]))};
     // Make the ray through that place.

@@ -67,8 +67,8 @@ void Crossings::put(Crossing *known, size_t ray, const Hit &hit, const glm::vec3
 uint32_t Crossings::count_before(size_t ray, const Hit &hit) const {
   uint32_t count = 0;
   for (uint32_t number = rays_[ray].first; number != kNone; number = crossings_[number].next) {
-    const Hit &layer = crossings_[number].hit;
-    count += closer(layer.t, layer.instance, layer.primitive, hit);
+    const Hit &passed = crossings_[number].hit;
+    count += closer(passed.t, passed.instance, passed.primitive, hit);
   }
   return count;
 }
@@ -84,14 +84,14 @@ std::span<const Crossing> Crossings::sort(size_t ray, bool clear) {
   return sorted_;
 }
 
-HitStage::HitStage(const Scene &scene, const Camera &camera, bool passes)
+HitStage::HitStage(const Scene &scene, const Camera &camera, bool crosses)
     : HitFilter(scene.perforated_instances.data()), scene_(scene), shader_(scene, &camera), crossings_(scene.geometry),
-      passes_(passes && (scene.features & kFeatureTransparency) &&
-              std::ranges::find(scene.perforated_instances, 1) != scene.perforated_instances.end()) {}
+      crosses_(crosses && (scene.features & kFeatureTransparency) &&
+               std::ranges::find(scene.perforated_instances, 1) != scene.perforated_instances.end()) {}
 
 void HitStage::find(std::span<const Ray> rays, std::span<const uint32_t> left, std::vector<Hit> &hits) {
   hits.resize(rays.size());
-  if (!passes_)
+  if (!crosses_)
     return scene_.accelerator->closest_hit(rays, hits);
   left_ = left;
   crossings_.begin(rays.size());

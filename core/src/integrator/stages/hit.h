@@ -1,9 +1,10 @@
-// The next hits of rays: one traversal passes all surfaces that an image has cut away.
+// The next hits of rays: one traversal passes all surfaces that are absent by their transmittance (compile/cutout.h), such as
+// leaves cut out by an image. A surface that lets only a part of the light pass is a hit.
 //
-// In: rays, and the number of surfaces that each may still pass, from an integrator. Out: hits, for the shading queues, and the
-// absent surfaces that rays have passed before their hits. At an absent surface, shading would continue the path straight
-// through with weight 1 and sample no light. Rays are in the normalised world. Caller: PATH; accel/accelerator.h finds the
-// hits.
+// In: rays, and the number of surfaces that each may still pass, from an integrator. Out: hits, for the met lights, the shading
+// queues and the film, and the absent surfaces that rays have passed before their hits. At an absent surface, shading would
+// continue the path straight through with weight 1 and sample no light. Rays are in the normalised world. Caller: PATH; the
+// shadow stage has Crossings of its own; accel/accelerator.h finds the hits.
 #pragma once
 
 #include "integrator/sample.h"
@@ -59,11 +60,11 @@ private:
 
 class HitStage final : HitFilter {
 public:
-  // passes: whether rays may pass absent surfaces in one traversal; otherwise they hit them.
-  HitStage(const Scene &scene, const Camera &camera, bool passes);
+  // crosses: whether rays may pass absent surfaces in one traversal; otherwise they hit them.
+  HitStage(const Scene &scene, const Camera &camera, bool crosses);
 
   // Whether rays may pass absent surfaces, so that find() needs left.
-  bool passes() const { return passes_; }
+  bool crosses() const { return crosses_; }
   // Finds the closest hits. left: by ray, the number of surfaces that the ray may pass.
   void find(std::span<const Ray> rays, std::span<const uint32_t> left, std::vector<Hit> &hits);
   // Returns the number of absent surfaces that a ray of the last batch has passed before its hit.
@@ -74,13 +75,14 @@ public:
   std::span<const Crossing> absent(size_t ray) { return crossings_.in_order(ray); }
 
 private:
-  // Whether a hit ends the search: its surface is present, or its ray may pass no more. Otherwise stores the crossing.
+  // Whether a hit ends the search: its surface is present, see Shader::is_there(), or its ray may pass no more. Otherwise
+  // stores the crossing.
   bool counts(size_t ray, const Hit &hit) override;
 
   const Scene &scene_;
   Shader shader_;
   Crossings crossings_;
-  bool passes_;
+  bool crosses_;
   std::span<const uint32_t> left_;
 };
 

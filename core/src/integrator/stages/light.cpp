@@ -42,8 +42,8 @@ void LightStage::choose(uint32_t asking, const SurfaceBlock &surfaces, const Lob
     if (!(choices_.probability[lane] > 0.0))
       return;
     samples_.hidden[lane] = lights.hidden_from(light);
-    if (light < lights.lights().size()) {
-      lamp_[lane] = &lights.lights()[light];
+    if (light < lights.lamps().size()) {
+      lamp_[lane] = &lights.lamps()[light];
       samples_.far |= uint32_t(lamp_[lane]->kind == LightKind::Sun) << lane;
       lamps_ |= 1u << lane;
     } else {
@@ -109,8 +109,8 @@ void LightStage::sample(uint32_t light, uint32_t lanes, const Doubles (&p)[3], c
   std::fill_n(choices_.number, kBlockLanes, light);
   std::fill_n(choices_.probability, kBlockLanes, 1.0);
   std::fill_n(samples_.hidden, kBlockLanes, lights.hidden_from(light));
-  if (light < lights.lights().size()) {
-    const Light &lamp = lights.lights()[light];
+  if (light < lights.lamps().size()) {
+    const Light &lamp = lights.lamps()[light];
     samples_.far = lamp.kind == LightKind::Sun ? lanes : 0;
     return kernel_.sample_lamp(lamp, p, numbers, lanes, samples_);
   }

@@ -1,9 +1,9 @@
 // Light samples of vertices, in lanes: the choice of a light, a point of the light, and the light that arrives from there
 // unless a surface occludes it.
-//
-// In: surfaces, their lobes and numbers, from an integrator. Out: LightSamples and LitBlock, for the integrator and the shadow
-// stage. Lengths are in the normalised world, densities per solid angle. Callers: PATH, CLASSIC, which samples each light in
-// turn, and the probes.
+// In: surfaces, their lobes, numbers, throughputs and Light Paths, from an integrator. Out: LightSamples; for PATH LitBlock,
+// with the radiance that light adds to the sample, for the shadow stage. Lengths are in the normalised world, densities per
+// solid angle. Callers: PATH; CLASSIC, which samples each light in turn and fills a LitBlock of its own; the stage of met
+// lights, which uses the kernel and the environment; the probes.
 #pragma once
 
 #include "compile/scene.h"
@@ -16,7 +16,8 @@
 
 namespace lancer {
 
-// Directions to the environment, and the density with which its map gives them.
+// Directions to the environment, and the density with which its map gives them. u: by the light stage; wi: by the kernel or the
+// stage of met lights; pdf: by the kernel.
 struct alignas(64) SkyBlock {
   Floats u[2];
   Doubles wi[3], pdf; // wi: unit
@@ -53,19 +54,20 @@ private:
   std::vector<NodeLanes> values_;
 };
 
-// As LightChoice; rest: its u. The number LightSet::size() stands for the tree of many lights, in which the choice goes on.
+// The members of LightChoice; rest: LightChoice::u. The number LightSet::size() stands for the tree of many lights, in which
+// the choice goes on.
 struct alignas(64) LightChoices {
   Words number;
   Doubles probability, rest;
 };
 
-// As LightSample; target and distance only of lights that are not far. pdf includes the probability of the choice, 0: no
-// sample.
+// The members of LightSample; target only of lights that are not far; distance: infinite for suns, unset for the environment.
+// pdf includes the probability of the choice, 0: no sample.
 struct alignas(64) LightSamples {
   Doubles wi[3], target[3], distance, pdf;
   Floats radiance[3];
-  Words delta, hidden; // hidden: RayKind bits of the rays that do not see the light
-  uint32_t far = 0;    // bits of lanes: the light is at infinity
+  Words delta, hidden; // hidden: RayKind bits of the rays that do not see the light; by LightStage
+  uint32_t far = 0;    // bits of lanes: the light is at infinity; by LightStage
 };
 
 // One face of an emitting mesh for each lane, and the sample that a point takes of it.
@@ -133,7 +135,7 @@ class LightStage {
 public:
   LightStage(const Scene &scene, const Camera *camera);
 
-  // Chooses a light for each of these lanes and samples it. path(lane): returns the Light Path values of the vertex.
+  // Chooses a light for each of these lanes and samples it. path(lane): returns the Light Path of a light sample at the vertex.
   template <class PathOf>
   void ask(uint32_t lanes, const SurfaceBlock &surfaces, const LobeBlock &lobes, const VertexNumbers &numbers, PathOf &&path) {
     choose(lanes, surfaces, lobes, numbers);
@@ -182,7 +184,7 @@ private:
   void sample_shape(uint32_t lane, const Doubles (&p)[3], const VertexNumbers &numbers, LightPath<float> path);
   void sample_sky(const VertexNumbers &numbers, uint32_t transmits);
   const Emitter &emitter_of(uint32_t lane) const {
-    return scene_.lights.emitters()[choices_.number[lane] - scene_.lights.lights().size()];
+    return scene_.lights.emitters()[choices_.number[lane] - scene_.lights.lamps().size()];
   }
 
   const Scene &scene_;

@@ -7,7 +7,7 @@ namespace lancer {
 
 // Light that waits for its shadow ray.
 struct WaitingLight {
-  uint32_t sample = 0, sum = 0; // number of the sample in its batch, and of its sum of indirect light
+  uint32_t target = 0, sum = 0; // PATH: number of the sample in its batch, and of its sum of indirect light; CLASSIC: the ray
   bool indirect = false;        // scattered more than once
   bool occlusion = false;       // no light: the pass of ambient occlusion
   glm::vec3 share[2] = {glm::vec3(0.0f), glm::vec3(0.0f)}; // diffuse, glossy; the rest is transmission

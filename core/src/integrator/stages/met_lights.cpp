@@ -29,7 +29,7 @@ std::span<const MetLight> MetLights::find(std::span<const Ray> rays, std::span<c
       segments_.transmits |= uint32_t{last.transmits} << lane;
     }
     for (const uint32_t light : lights.always_on_the_way()) {
-      const uint32_t met = kernel_.meets(segments_, lights.lights()[light]) & ((1u << count) - 1u);
+      const uint32_t met = kernel_.meets(segments_, lights.lamps()[light]) & ((1u << count) - 1u);
       if (met != 0)
         meet_lamp(first, met, light);
     }
@@ -46,7 +46,7 @@ void MetLights::meet_lamp(size_t first, uint32_t lanes, uint32_t light) {
   // A light that is not in the binary tree is in the tree of many lights.
   if (place == kNone)
     return each_lane(lanes, [&](uint32_t lane) { meet_alone(first + lane, light); });
-  kernel_.meet(segments_, scene_.lights.lights()[light], few.nodes(), place, block_);
+  kernel_.meet(segments_, scene_.lights.lamps()[light], few.nodes(), place, block_);
   each_lane(lanes, [&](uint32_t lane) {
     const LightHit hit{get(block_.radiance, lane), block_.pdf[lane], block_.distance[lane]};
     if (is_on_segment(first + lane, hit))
@@ -56,7 +56,7 @@ void MetLights::meet_lamp(size_t first, uint32_t lanes, uint32_t light) {
 
 void MetLights::meet_alone(size_t ray, uint32_t light) {
   const glm::dvec3 &d = rays_[ray].d;
-  const LightHit hit = meet(scene_.lights.lights()[light], from_[ray].p, d / glm::length(d));
+  const LightHit hit = meet(scene_.lights.lamps()[light], from_[ray].p, d / glm::length(d));
   if (is_on_segment(ray, hit))
     add(ray, light, hit, from_[ray].pdf > 0.0 ? scene_.lights.probability(from_[ray].query(), light) : 1.0);
 }

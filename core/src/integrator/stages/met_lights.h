@@ -1,8 +1,9 @@
 // Light that rays run into: lamps on their way, surfaces that emit, the environment behind all surfaces.
 //
-// In: rays, their hits, and the last scatterings of their paths, from the integrator. Out: radiance towards the ray's origin,
-// and the weight of BSDF sampling against light sampling, which may have found the same light. Lengths are in the normalised
-// world, densities per solid angle. Caller: PATH.
+// In: rays, their hits, and the last scatterings of their paths, from the integrator. Out: radiance of lamps and of a varying
+// environment towards the ray's origin, and the weight of all light, also of surfaces, by the power heuristic
+// (lights/sample_light.h), because light sampling may have found the same light. Lengths are in the normalised world, densities
+// per solid angle. Caller: PATH.
 #pragma once
 
 #include "integrator/stages/light.h"
@@ -13,7 +14,7 @@ namespace lancer {
 struct Scattering {
   glm::dvec3 p{0.0};
   glm::vec3 n{0.0f};      // shading normal
-  bool transmits = false; // light may pass the surface
+  bool transmits = false; // some lobe scatters light to the other side
   double pdf = 0.0;       // of the BSDF sample that gave the ray; 0 after the camera or a single direction
   double passed = 0.0;    // normalised distance to the ray's origin, through transparent surfaces
 
@@ -32,7 +33,7 @@ class MetLights {
 public:
   MetLights(const Scene &scene, const Camera &camera) : scene_(scene), kernel_(light_kernel()), sky_(scene, &camera) {}
 
-  // Returns all lamps that the rays pass before they end, for lights occlude nothing; valid until the next call.
+  // Returns all lamps that the rays pass before they end, because lights occlude nothing; valid until the next call.
   std::span<const MetLight> find(std::span<const Ray> rays, std::span<const Hit> hits, std::span<const Scattering> from);
   // Returns the weight of the emission of a surface that a ray has hit.
   float emission_weight(const Scattering &from, const Surface &surface) const;

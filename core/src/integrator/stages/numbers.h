@@ -1,7 +1,8 @@
 // The random numbers of a sample by name, and those of vertices in lanes, also where samples split.
 //
 // In: the address of each lane's sample and the dimension of its vertex, from an integrator. Out: VertexNumbers, in [0, 1), for
-// the stages light, scatter and occlusion, and for roulette. Callers: PATH; CLASSIC sets numbers of its own.
+// the stages light, scatter and occlusion, and for roulette. Callers: PATH; CLASSIC sets numbers of its own. The camera's and
+// the crossings' dimensions also stand here.
 #pragma once
 
 #include "sampling/sobol.h"
@@ -21,7 +22,7 @@ enum VertexDimension : uint32_t {
   kVertexLightDigits = 7, // more digits of the choice, which a million faces need
   kVertexStride = 8
 };
-// Layers of opacity have their own dimensions, far behind the others.
+// Crossings have dimensions of their own, far behind the others.
 inline constexpr uint32_t kDimensionOpacity = 1u << 16;
 // One more than the largest number of surfaces that a path may pass straight through.
 inline constexpr uint32_t kMaxCrossings = 1025;
@@ -30,7 +31,7 @@ inline constexpr uint32_t kMaxCrossings = 1025;
 inline constexpr uint32_t kLightNumbers = 3u << kVertexLight | 1u << kVertexLightChoice | 1u << kVertexLightDigits;
 inline constexpr uint32_t kPathNumbers = 3u << kVertexBsdf | 1u << kVertexLobe | 1u << kVertexRoulette;
 
-// By VertexDimension.
+// The numbers of a vertex, indexed by VertexDimension.
 struct alignas(64) VertexNumbers {
   Floats of[kVertexStride];
 };

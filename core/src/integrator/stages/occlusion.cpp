@@ -26,7 +26,7 @@ OcclusionStage::Open OcclusionStage::send(uint32_t lane, const SurfaceStage &sur
     // Like a shadow ray, the occlusion ray starts on the curved surface of a smooth mesh.
     Ray ray = shadow_ray(scene_.geometry, surface, ns, ng, around);
     ray.tmax = reach_;
-    shadows.push(ray, {.sample = sample, .occlusion = true}, share, passed);
+    shadows.push(ray, {.target = sample, .occlusion = true}, share, passed);
     if (shadows.asks_light_path())
       shadows.set_light_path(path);
   };

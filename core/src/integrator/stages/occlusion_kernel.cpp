@@ -39,7 +39,7 @@ void look(const LobeBlock &lobes, const MeanBlock &means, const ScatterBlock &ne
       return (dot(d, bsdf.ns) > zero) & (dot(d, bsdf.ng) > zero);
     };
     const V3 next_wi = load3(next.wi, first);
-    const F density = load(next.density + first);
+    const F density = load(next.pdf_scattered + first);
     const M drawn = by_next & above(next_wi) & (density > zero);
     const F weight = max(dot(n, next_wi), zero) / (F(glm::pi<float>()) * density);
     store(around.weight + first, select(drawn, weight, zero));

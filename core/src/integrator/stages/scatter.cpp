@@ -41,13 +41,4 @@ void ScatterStage::write_ray(uint32_t lane, const Hit &hit, uint32_t kinds, Ray 
                     kinds, ray);
 }
 
-void write_ray(const Hit &hit, const glm::dvec3 &o, const glm::dvec3 &d, double tmax, uint32_t kinds, Ray &ray) {
-  ray.o = o;
-  ray.d = d;
-  ray.tmax = tmax;
-  ray.skip_instance = hit.instance;
-  ray.skip_primitive = hit.primitive;
-  ray.kinds = kinds;
-}
-
 } // namespace lancer

@@ -1,8 +1,8 @@
 // The next directions of paths, in lanes, sampled from the lobes of surfaces.
 //
-// In: surfaces, their lobes and numbers, from an integrator. Out: ScatterBlock, for the occlusion stage and the integrator.
-// Densities are per solid angle; the block is for paths that are scattered, not for those that pass straight through. Caller:
-// PATH.
+// In: surfaces, their lobes, numbers and throughputs, from an integrator. Out: ScatterBlock, for the occlusion stage and the
+// integrator. Densities are per solid angle; the block is for paths that are scattered, not for those that pass straight
+// through. Caller: PATH.
 #pragma once
 
 #include "integrator/stages/numbers.h"
@@ -14,12 +14,12 @@ struct alignas(64) ScatterBlock {
   Doubles origin[3]; // of the next ray, on the side of wi
   Doubles pdf;       // of a scattered path's wi, with the share of paths that are scattered; 0: a single direction
   Floats wi[3], beta[3];
-  Floats density;     // of wi among scattered paths, 0: a single direction
-  Floats alpha2;      // alpha_x alpha_y of the sampled lobe, 0 for a single direction
-  Floats share[2][3]; // diffuse and glossy share of the sample's weight, where shares are wanted
+  Floats pdf_scattered; // of wi among scattered paths, 0: a single direction
+  Floats alpha2;        // alpha_x alpha_y of the sampled lobe, 0 for a single direction
+  Floats share[2][3];   // diffuse and glossy share of the sample's weight, where shares are wanted
   // Each of the following is one bit per lane.
   uint32_t sampled = 0;     // there is a next direction
-  uint32_t diffuse = 0;     // sampled from a diffuse lobe
+  uint32_t diffuse = 0;     // the next ray is a diffuse one, as BsdfSample::diffuse says
   uint32_t transmitted = 0; // the next ray passes through the surface
 };
 
@@ -57,8 +57,5 @@ private:
   const ScatterKernel &kernel_;
   ScatterBlock next_{};
 };
-
-// Fills a ray that leaves the surface of a hit from an origin off the surface. The ray is written in place.
-void write_ray(const Hit &hit, const glm::dvec3 &o, const glm::dvec3 &d, double tmax, uint32_t kinds, Ray &ray);
 
 } // namespace lancer

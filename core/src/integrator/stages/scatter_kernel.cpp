@@ -26,7 +26,7 @@ void scatter(const ScatteringVertices &vertices, ScatterBlock &next) {
     store3(next.wi, first, sample.wi);
     store3(next.beta, first, load3(vertices.beta, first) * (sample.weight / narrow(scatters * load(vertices.count + first))));
     store(next.pdf + first, select(sample.delta, D(0.0), widen(sample.pdf) * scatters));
-    store(next.density + first, select(sample.delta, F(0.0f), sample.pdf));
+    store(next.pdf_scattered + first, select(sample.delta, F(0.0f), sample.pdf));
     store(next.alpha2 + first, sample.alpha2);
     for (int component = 0; component < 2 && lobes.shares; ++component)
       store3(next.share[component], first, sample.share[component]);

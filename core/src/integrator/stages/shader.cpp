@@ -15,7 +15,7 @@ void Shader::shade(const Surface &surface, const View &view, Shaded &result) {
   nodes_.run(material->program, material->surface_nodes, surface, view);
   find_lobes<float>(&material, PlaceValues{nodes_.values()}, false, view.wo, surface.ns, surface.ng, result.bsdf);
   result.emission = nodes_.value(material->emission) + result.bsdf.emission;
-  if (material->transmits())
+  if (material->is_transparent())
     result.transmittance = glm::max(nodes_.value(material->transmittance), 0.0f);
 }
 
@@ -24,7 +24,7 @@ glm::vec3 Shader::transmittance(const Ray &ray, const Hit &hit, const LightPath<
   if (number == kNone)
     return glm::vec3(0.0f);
   const Material &material = scene_.materials[number];
-  if (!material.transmits() || (material.flags & MaterialFlag::OpaqueShadows))
+  if (!material.is_transparent() || (material.flags & MaterialFlag::OpaqueShadows))
     return glm::vec3(0.0f);
   // Use the cheapest evaluation that suffices.
   if (!material.transmittance.varies())

@@ -1,6 +1,7 @@
-// Queues of paths by the shading code of the surfaces that they have hit, so that neighbouring vertices run the same code.
+// Queues of paths by the shading code of the surfaces that they have hit, so that neighbouring vertices run the same code: by
+// classes of materials, whose lobes differ in numbers alone and whose programs of nodes are the same.
 //
-// In: numbers of paths and their hits, from an integrator. Out: the paths of each class of materials, for the surface stage.
+// In: numbers of rays and their hits, from an integrator. Out: the numbers of each class of materials, for the integrator.
 // Callers: all integrators.
 #pragma once
 
@@ -26,8 +27,8 @@ public:
     static const Material material;
     return material;
   }
-  // A path that has hit a surface.
-  struct Met {
+  // A ray that has hit a surface.
+  struct Queued {
     uint32_t number;
     const Material *material;
   };
@@ -38,7 +39,7 @@ public:
 
   void begin() { met_.clear(); }
   size_t size() const { return met_.size(); }
-  // number: of the path.
+  // Adds a hit; number: of its ray.
   void add(size_t number, const Hit &hit) {
     const uint32_t material = material_of(scene_.geometry, scene_.slots, hit.instance, hit.primitive);
     if (material == kNone)
@@ -50,12 +51,12 @@ public:
   template <class Shade> void each(const Shade &shade) {
     // Count, then place.
     std::fill(starts_.begin(), starts_.end(), 0u);
-    for (const Queued &met : met_)
+    for (const Entry &met : met_)
       ++starts_[met.place + 1];
     for (size_t i = 1; i < starts_.size(); ++i)
       starts_[i] += starts_[i - 1];
     sorted_.resize(met_.size());
-    for (const Queued &met : met_)
+    for (const Entry &met : met_)
       sorted_[starts_[met.place]++] = met.met;
     // Each start has become the end of its material.
     uint32_t begin = 0;
@@ -64,23 +65,23 @@ public:
       const uint32_t end = starts_[place];
       if (more || end == begin)
         continue;
-      shade(std::span<const Met>(sorted_).subspan(begin, end - begin));
+      shade(std::span<const Queued>(sorted_).subspan(begin, end - begin));
       begin = end;
     }
   }
 
 private:
-  struct Queued {
-    Met met;
+  struct Entry {
+    Queued met;
     uint32_t place;
   };
 
   const Scene &scene_;
   std::vector<uint32_t> places_; // of each material in the order by classes
   std::vector<uint32_t> order_;  // the materials in that order
-  std::vector<Queued> met_;
+  std::vector<Entry> met_;
   std::vector<uint32_t> starts_;
-  std::vector<Met> sorted_;
+  std::vector<Queued> sorted_;
 };
 
 } // namespace lancer

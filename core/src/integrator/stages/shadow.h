@@ -1,7 +1,8 @@
 // Shadow rays, queued and traced as a batch: they determine the part of each light contribution that arrives.
 //
-// In: contributions and their rays, from integrators and the occlusion stage. Out: the contributions times the transmittance of
-// the surfaces on the way, in the order of pushing. Rays are in the normalised world. Callers: PATH, CLASSIC.
+// In: contributions with their rays, Light Paths and numbers of crossings, from integrators and the occlusion stage. Out: the
+// contributions times the transmittance of the surfaces on the way, in the order of pushing. Rays are in the normalised world.
+// Callers: PATH, CLASSIC, the occlusion stage.
 #pragma once
 
 #include "integrator/sample.h"
@@ -28,7 +29,7 @@ public:
         crossings_(scene.geometry) {}
 
   // Queues a contribution; trace() multiplies it by the ray's transmittance. passed: the number of surfaces that the path has
-  // already passed straight through; they count against the same limit.
+  // already passed straight through; they count against the same limit (CLASSIC: 0).
   void push(const Ray &ray, const WaitingLight &waiting, const glm::vec3 &contribution, uint32_t passed = 0) {
     rays_.push_back(ray);
     waiting_.push_back({waiting, contribution, passed});
@@ -55,8 +56,8 @@ public:
     push(ray, waiting, contribution);
   }
 
-  // Traces all rays, calls arrive(waiting, contribution times transmittance) in the order of pushing, and empties the queue.
-  // Returns the number of rays.
+  // Traces all rays, calls arrive(waiting, contribution times transmittance) in the order of pushing where light arrives, and
+  // empties the queue. Returns the number of rays, also of those that nothing occludes.
   template <class Arrive> uint64_t trace(Arrive &&arrive) {
     const uint64_t count = any_clear_ ? trace_clear() : trace_solid();
     for (const Waiting &waiting : waiting_)

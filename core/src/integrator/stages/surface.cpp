@@ -41,7 +41,7 @@ uint32_t SurfaceStage::add(const Ray &ray, const Hit &hit, const Material &mater
   emission_[lane] = material.emission.value;
   transmittance_[lane] = glm::max(material.transmittance.value, 0.0f);
   materials_.material[lane] = &material;
-  materials_.through[lane] = material.transmits() ? mean(transmittance_[lane]) : 0.0f;
+  materials_.through[lane] = material.is_transparent() ? mean(transmittance_[lane]) : 0.0f;
   materials_.ends |= uint32_t{ends} << lane;
   hits_.used |= bit;
   hits_.placement[lane] = instance.placement();
@@ -112,7 +112,7 @@ void SurfaceStage::run_nodes(std::span<const View> views) {
   for (uint32_t lane = 0; lane < count_; ++lane) {
     const Material &of = *materials_.material[lane];
     emission_[lane] = value(of.emission, lane);
-    transmittance_[lane] = of.transmits() ? glm::max(value(of.transmittance, lane), 0.0f) : glm::vec3(0.0f);
+    transmittance_[lane] = of.is_transparent() ? glm::max(value(of.transmittance, lane), 0.0f) : glm::vec3(0.0f);
     materials_.through[lane] = mean(transmittance_[lane]);
   }
 }
@@ -147,7 +147,7 @@ void SurfaceStage::place_nodes(const Material &material, std::span<const View> v
   }
 }
 
-SurfaceStage::Holes SurfaceStage::cut_holes(uint32_t seen) {
+SurfaceStage::Holes SurfaceStage::cut_holdouts(uint32_t seen) {
   materials_.holes = 0;
   Holes holes;
   if (!(scene_.features & kFeatureHoldout))

@@ -1,11 +1,11 @@
-// From hits to surfaces and their lobes, in lanes.
+// Surfaces and their lobes at hits, in lanes.
 //
 // In: rays, their hits, materials of one class, and the views from which nodes see them, from an integrator. Out: the surface
 // and its lobes, for the stages light, scatter, occlusion and shadow; emission, transmittance, holes and means of lobes, for
-// the integrator. Callers: all integrators. Lengths are in the normalised world. The steps of a block:
+// the integrator and the occlusion stage. Callers: all integrators. Lengths are in the normalised world. The steps of a block:
 //
-//   add() each hit, then find(), ask_nodes() (nodes/run.h), cut_holes(), build_lobes() (bsdf/material_lobes.h), describe()
-//   where passes need it; clear() at the end.
+//   add() each hit or replace() its surface, then find(), ask_nodes() (nodes/run.h), cut_holdouts(), build_lobes()
+//   (bsdf/material_lobes.h), describe() where passes need it; clear() at the end. After move() or view_along(), find() again.
 #pragma once
 
 #include "integrator/sample.h"
@@ -23,12 +23,12 @@ struct alignas(64) HitBlock {
   // Each of the following is one bit per lane.
   uint32_t used = 0;
   uint32_t on_mesh = 0, smooth = 0; // triangles; those with smooth normals
-  uint32_t exact = 0;               // spheres and the following shapes
+  uint32_t exact = 0;               // exact surfaces: the following shapes, and spheres
   uint32_t on_plane = 0, on_cylinder = 0, on_cone = 0;
 };
 
-// As Surface, with both normals outwards. wo: unit, towards the viewer; length: of d; terminator: Instance::terminator, 0 on
-// exact surfaces.
+// The members of Surface, with both normals outwards. wo: unit, towards the viewer; length: of d; terminator:
+// Instance::terminator, 0 on exact surfaces.
 struct alignas(64) SurfaceBlock {
   Doubles p[3], offset, length;
   Floats ng[3], ns[3], wo[3];
@@ -38,14 +38,14 @@ struct alignas(64) SurfaceBlock {
 // The materials at the surfaces, and what their nodes say.
 struct alignas(64) MaterialBlock {
   const Material *material[kBlockLanes];           // all of one class
-  Floats transmittance[3], through;                // through: its mean
-  const float (*values)[4][kBlockLanes] = nullptr; // of nodes, four floats for every lane
-  uint32_t holes = 0;                              // bits of lanes: lobes are hidden by a hole
+  Floats transmittance[3], through;                // by describe(); by add() and ask_nodes(): the mean of the transmittance
+  const float (*values)[4][kBlockLanes] = nullptr; // of nodes, four floats for every lane, by ask_nodes()
+  uint32_t holes = 0;                              // bits of lanes: lobes are hidden by a hole; by cut_holdouts()
   uint32_t ends = 0;                               // bits of lanes: the surface scatters no light
   bool shares = false;                             // diffuse and glossy shares of light are wanted
 };
 
-// The lobes, with normals and emission on the viewer's side.
+// The lobes, with normals and emission on the viewer's side; by build_lobes().
 struct alignas(64) LobeBlock {
   Floats ns[3], ng[3];
   Floats emission[3];           // of layered lobes; SurfaceStage::emission() adds that of the material
@@ -53,7 +53,7 @@ struct alignas(64) LobeBlock {
   std::byte *storage = nullptr; // of the lobes of all lanes: see lobe_lanes.h
   // Each of the following is one bit per lane.
   uint32_t used = 0;
-  uint32_t transmits = 0; // light may pass the surface
+  uint32_t transmits = 0; // some lobe scatters light to the other side
   uint32_t scatters = 0;  // into more than single directions
   bool shares = false;    // as in MaterialBlock
 };
@@ -115,10 +115,10 @@ public:
   struct Holes {
     uint32_t cut = 0, nothing = 0;
   };
-  Holes cut_holes(uint32_t seen);
+  Holes cut_holdouts(uint32_t seen);
   // Returns the alpha that a hole takes from a pixel. beta: throughput from the surface to the camera.
   float cut_alpha(uint32_t lane, const glm::vec3 &beta) const;
-  // Shows all surfaces as opaque.
+  // Shows all surfaces as opaque in transmittance(); the lobes' share of paths that pass straight through stays.
   void make_opaque();
   void build_lobes();
   // Computes the means of the lobes that passes need; means() and mixture() are those of the last call.
@@ -132,7 +132,7 @@ public:
   const Ray &ray(uint32_t lane) const { return *ray_of_[lane]; }
   const Hit &hit(uint32_t lane) const { return *hit_of_[lane]; }
   const Instance &instance(uint32_t lane) const { return scene_.geometry.instances[hit(lane).instance]; }
-  // Returns the distance from a lane's ray to its hit.
+  // Returns the distance from the origin of a lane's ray to its hit.
   double distance(uint32_t lane) const { return hit(lane).t * surfaces_.length[lane]; }
   Surface surface(uint32_t lane) const;
   glm::vec3 value(const Parameter &parameter, uint32_t lane) const;
@@ -144,7 +144,7 @@ public:
   Mixture<float> mixture(uint32_t lane) const;
   uint32_t holes() const { return materials_.holes; } // bits of lanes
 
-  // The places of a block's lanes, kept while the lanes are elsewhere.
+  // The places of a block's lanes, kept while move() or view_along() has taken the lanes elsewhere.
   struct Places {
     HitBlock hits;
     SurfaceBlock surfaces;
