@@ -204,8 +204,8 @@ def core_enums_text(header):
     structs = "\n".join(
         f"struct {name} {{ enum : uint32_t {{\n{core_members(header, of)}\n}}; }};" for of, name in CORE_ENUMS.items()
     )
-    return f"""// The numbers of the interface that records of a scene hold, and the parameters of lancer_principled: X(kind, member, name for
-// artists, default).
+    return f"""// The numbers of the interface that records of a scene hold, and the parameters of lancer_principled:
+// X(kind, member, name for artists, default).
 // Generated from core/include/lancer.h by `make bindings`; changes here are lost.
 #pragma once
 

@@ -1,5 +1,5 @@
-// The numbers of the interface that records of a scene hold, and the parameters of lancer_principled: X(kind, member, name for
-// artists, default).
+// The numbers of the interface that records of a scene hold, and the parameters of lancer_principled:
+// X(kind, member, name for artists, default).
 // Generated from core/include/lancer.h by `make bindings`; changes here are lost.
 #pragma once
 
