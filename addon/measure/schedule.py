@@ -11,7 +11,7 @@ import contextlib
 import math
 import time
 
-# Longest range in seconds: without target error and time limit, ranges have 1, 1, 2, 4 ... samples up to it, then as many as fit.
+# Longest range in seconds: without target error and time limit, ranges have 1, 1, 2, 4 ... samples up to it, then all that fit.
 _LONGEST_RANGE = 1.0
 # Samples from which on the error is certain enough for decisions.
 FIRST_LOOK = 16
