@@ -53,8 +53,8 @@ struct LightWalk {
   double u = 0.0, probability = 0.0;
 };
 
-// Segments of rays: from the last scattering along d, up to the distance end. normal and transmits are those of the LightQuery
-// at that scattering.
+// Segments of rays, by the stage of met lights: from the last scattering along d, up to the distance end. normal and transmits
+// are those of the LightQuery at that scattering.
 struct alignas(64) SegmentBlock {
   Doubles from[3], d[3], end; // d: of any length
   Floats normal[3];

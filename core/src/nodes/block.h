@@ -40,7 +40,7 @@ struct alignas(64) NodeBlock {
   float ns[3][kBlockLanes], ng[3][kBlockLanes], wo[3][kBlockLanes];
   float footprint[kBlockLanes];       // radius of the pixel's footprint, normalised units; 0: no bumps
   const glm::dvec3 *eye[kBlockLanes]; // origin of a camera ray; null: any other ray
-  // As in LightPath.
+  // The members of LightPath.
   uint32_t kinds[kBlockLanes];
   float length[kBlockLanes], depth[kBlockLanes], diffuse[kBlockLanes], glossy[kBlockLanes], transmission[kBlockLanes],
       transparent[kBlockLanes], portal[kBlockLanes];

@@ -69,7 +69,7 @@ struct Instance {
   uint32_t object_index = 0;
   uint32_t hidden_from = 0; // RayKind bits
   bool holdout = false;
-  float terminator = 0.0f;   // cosine below which shadow rays start on the curved surface
+  float terminator = 0.0f;   // of smooth meshes: cosine below which shadow rays start on the curved surface
   uint32_t number = 0;       // in the user's order of adding
   glm::dvec3 flat_axis{0.0}; // object space, unit: the direction that a flattening placement loses; else 0
 

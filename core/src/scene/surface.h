@@ -9,7 +9,7 @@ namespace lancer {
 
 struct Surface {
   glm::dvec3 p{0.0};     // normalised world, on the surface to a few ulp of double
-  double offset = 0.0;   // bound on p's distance from the surface as seen by later rays
+  double offset = 0.0;   // bound on p's distance from the surface as seen by later rays: a ray starts this far off
   glm::vec3 ng{0, 0, 1}; // outward geometric normal, unit
   glm::vec3 ns{0, 0, 1}; // shading normal, unit; may be on the other side of ng
   glm::dvec2 bary{0.0};  // weights of vertices 1 and 2; 0 on an exact surface

@@ -23,9 +23,9 @@ struct Path {
   uint32_t crossings = 0;           // transparent surfaces passed since the last scattering
   uint32_t passed_through = 0;      // transparent surfaces passed in all
   PathStory story;                  // for nodes that read it
-  bool in_view = true;              // since the camera, the path has passed straight on or through clear glass alone
-  bool last = false;                // the path ends at the next surface
-  double length = 0.0;              // of the whole path, normalised units
+  bool in_view = true; // since the camera, the path has passed straight on or through clear glass alone; set by PATH
+  bool last = false;   // the path ends at the next surface
+  double length = 0.0; // of the whole path, normalised units; set by PATH
 
   // Returns the number of surfaces that the path may still pass straight through: up to limit on the whole path, and at least
   // one unless the path is at its last surface. After these, the path ends at the next surface and gets only the light that

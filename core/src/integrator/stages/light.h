@@ -54,8 +54,8 @@ private:
   std::vector<NodeLanes> values_;
 };
 
-// The members of LightChoice; rest: LightChoice::u. The number LightSet::size() stands for the tree of many lights, in which
-// the choice goes on.
+// The members of LightChoice, by the kernel; rest: LightChoice::u. The number LightSet::size() stands for the tree of many
+// lights, in which LightStage goes on to choose, as among the faces of an emitter.
 struct alignas(64) LightChoices {
   Words number;
   Doubles probability, rest;

@@ -10,7 +10,8 @@
 
 namespace lancer {
 
-// The last scattering of a path, from which light samples compete with the path's ray. Of a camera ray: its origin; n is 0.
+// The last scattering of a path, written by the integrator: light samples from there compete with the path's ray. Of a camera
+// ray: its origin; n is 0.
 struct Scattering {
   glm::dvec3 p{0.0};
   glm::vec3 n{0.0f};      // shading normal
