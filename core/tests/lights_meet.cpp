@@ -12,6 +12,16 @@
 namespace lancer {
 namespace {
 
+// Calls a function for each light.
+template <class Visit> class Visitor final : public LightVisitor {
+public:
+  explicit Visitor(Visit visit) : visit_(visit) {}
+  void visit(uint32_t lane, uint32_t light) override { visit_(lane, light); }
+
+private:
+  Visit visit_;
+};
+
 using testing::ball;
 
 TEST(Lights, AreMetWhereTheyAreSampled) {
@@ -127,7 +137,7 @@ TEST(Lights, ManyAreMetAsOneByOne) {
     }
     const int count = round % 2 ? kBlockLanes : 5;
     std::vector<bool> candidates(size_t(kBlockLanes) * 300);
-    set.wide_tree().along(ways, uint32_t(count), [&](uint32_t lane, uint32_t number) {
+    Visitor near_rays([&](uint32_t lane, uint32_t number) {
       EXPECT_FALSE(candidates[lane * 300 + number]);
       candidates[lane * 300 + number] = true;
       // Reported lamps are near the segment: a box around a lamp reaches sqrt(3) radii at its corners. Its padding is 2^-22 of
@@ -139,6 +149,7 @@ TEST(Lights, ManyAreMetAsOneByOne) {
       const bool near = glm::length(to - glm::dot(to, wi[lane]) * wi[lane]) < reach;
       EXPECT_TRUE(near || glm::length(o[lane]) > 1000.0);
     });
+    set.wide_tree().along(ways, uint32_t(count), near_rays);
     for (int lane = 0; lane < count; ++lane)
       for (size_t k = 0; k < 300; ++k) {
         const LightHit hit = meet(lights[k], o[lane], wi[lane]);
@@ -172,8 +183,8 @@ TEST(Lights, TheDeepestTreeIsSearchedToItsEnd) {
       ways.end[lane] = 1e3;
     }
     uint32_t told = 0;
-    set.wide_tree().along(ways, count,
-                          [&](uint32_t lane, uint32_t number) { told |= uint32_t(number == first + lane) << lane; });
+    Visitor visitor([&](uint32_t lane, uint32_t number) { told |= uint32_t(number == first + lane) << lane; });
+    set.wide_tree().along(ways, count, visitor);
     EXPECT_EQ(told, (1u << count) - 1u);
   }
 }

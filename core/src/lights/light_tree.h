@@ -67,14 +67,10 @@ public:
   // Returns the probability with which choose() returns a light.
   double probability(const LightQuery &query, uint32_t number) const;
 
-  // Calls visit(segment, light) for each light that one of the first count segments may hit. The tree must not be empty.
-  template <class Visit> void along(const SegmentBlock &segments, uint32_t count, Visit &&visit) const {
-    kernel_->along(
-        tree(), segments, count,
-        [](void *context, uint32_t way, uint32_t light) {
-          (*static_cast<std::remove_reference_t<Visit> *>(context))(way, light);
-        },
-        &visit);
+  // Hands each light that one of the first count segments may hit to the visitor, with the number of the segment. The tree must
+  // not be empty.
+  void along(const SegmentBlock &segments, uint32_t count, LightVisitor &visitor) const {
+    kernel_->along(tree(), segments, count, visitor);
   }
 
   size_t bytes() const {

@@ -201,8 +201,7 @@ LANCER_LANE uint32_t pass(const LightBranch &branch, const FloatWay &way) {
   return passed;
 }
 
-[[gnu::flatten]] void along(const LightBranches &tree, const SegmentBlock &segments, uint32_t count, TreeKernel::Visit visit,
-                            void *context) {
+[[gnu::flatten]] void along(const LightBranches &tree, const SegmentBlock &segments, uint32_t count, LightVisitor &visitor) {
   // Round the segments to float.
   alignas(64) float o[3][kBlockLanes], inverse[3][kBlockLanes], slack[kBlockLanes], end[kBlockLanes];
   for (int first = 0; first < kBlockLanes; first += kLanes) {
@@ -234,7 +233,7 @@ LANCER_LANE uint32_t pass(const LightBranch &branch, const FloatWay &way) {
       const uint32_t child = branch.child[__builtin_ctz(at.children)], number = child & LightBranch::kNumber;
       at.children &= at.children - 1;
       if (child & LightBranch::kLight) {
-        visit(context, lane, number);
+        visitor.visit(lane, number);
         continue;
       }
       if (at.children != 0)

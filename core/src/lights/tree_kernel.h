@@ -61,6 +61,15 @@ struct alignas(64) SegmentBlock {
   uint32_t transmits; // bits of lanes
 };
 
+// Receives the lights that segments may hit.
+class LightVisitor {
+public:
+  virtual void visit(uint32_t lane, uint32_t light) = 0;
+
+protected:
+  ~LightVisitor() = default;
+};
+
 // One copy per instruction set; all copies give the same bits.
 struct TreeKernel {
   const char *name;
@@ -69,9 +78,8 @@ struct TreeKernel {
   // Returns the probability with which choose() reaches the child in that slot. Does not read number, u and probability of the
   // walk.
   double (*probability)(const LightBranches &tree, const LightWalk &walk, uint32_t slot);
-  // Calls visit(context, lane, light) for all lights that the first count segments may hit; no other light can be hit.
-  using Visit = void (*)(void *context, uint32_t lane, uint32_t light);
-  void (*along)(const LightBranches &tree, const SegmentBlock &segments, uint32_t count, Visit visit, void *context);
+  // Hands all lights that the first count segments may hit to the visitor; no other light can be hit.
+  void (*along)(const LightBranches &tree, const SegmentBlock &segments, uint32_t count, LightVisitor &visitor);
 };
 
 // Each copy is tree_kernel.cpp compiled with LANCER_ISA set to its name.

@@ -16,41 +16,41 @@ std::span<const MetLight> MetLights::find(std::span<const Ray> rays, std::span<c
   rays_ = rays;
   hits_ = hits;
   from_ = from;
-  for (size_t first = 0; first < rays.size(); first += kBlockLanes) {
+  for (first_ = 0; first_ < rays.size(); first_ += kBlockLanes) {
     // Evaluate from the last scattering, as sampling does.
-    const uint32_t count = uint32_t(std::min<size_t>(kBlockLanes, rays.size() - first));
+    const uint32_t count = uint32_t(std::min<size_t>(kBlockLanes, rays.size() - first_));
     segments_.transmits = 0;
     for (uint32_t lane = 0; lane < count; ++lane) {
-      const Scattering &last = from[first + lane];
+      const Scattering &last = from[first_ + lane];
       put(last.p, segments_.from, lane);
-      put(rays[first + lane].d, segments_.d, lane);
-      segments_.end[lane] = end_of(first + lane) + lights.most_before();
+      put(rays[first_ + lane].d, segments_.d, lane);
+      segments_.end[lane] = end_of(first_ + lane) + lights.most_before();
       put(last.n, segments_.normal, lane);
       segments_.transmits |= uint32_t{last.transmits} << lane;
     }
     for (const uint32_t light : lights.always_on_the_way()) {
       const uint32_t met = kernel_.meets(segments_, lights.lamps()[light]) & ((1u << count) - 1u);
       if (met != 0)
-        meet_lamp(first, met, light);
+        meet_lamp(met, light);
     }
     if (lights.finds())
-      lights.wide_tree().along(segments_, count, [&](uint32_t lane, uint32_t light) { meet_alone(first + lane, light); });
+      lights.wide_tree().along(segments_, count, *this);
   }
   return met_;
 }
 
 // Meets one lamp in the lanes that may hit it.
-void MetLights::meet_lamp(size_t first, uint32_t lanes, uint32_t light) {
+void MetLights::meet_lamp(uint32_t lanes, uint32_t light) {
   const BinaryLightTree &few = scene_.lights.binary_tree();
   const uint32_t place = few.place_of(light);
   // A light that is not in the binary tree is in the tree of many lights.
   if (place == kNone)
-    return each_lane(lanes, [&](uint32_t lane) { meet_alone(first + lane, light); });
+    return each_lane(lanes, [&](uint32_t lane) { meet_alone(first_ + lane, light); });
   kernel_.meet(segments_, scene_.lights.lamps()[light], few.nodes(), place, block_);
   each_lane(lanes, [&](uint32_t lane) {
     const LightHit hit{get(block_.radiance, lane), block_.pdf[lane], block_.distance[lane]};
-    if (is_on_segment(first + lane, hit))
-      add(first + lane, light, hit, block_.chosen[lane]);
+    if (is_on_segment(first_ + lane, hit))
+      add(first_ + lane, light, hit, block_.chosen[lane]);
   });
 }
 

@@ -30,7 +30,7 @@ struct MetLight {
   float weight;
 };
 
-class MetLights {
+class MetLights final : LightVisitor {
 public:
   MetLights(const Scene &scene, const Camera &camera) : scene_(scene), kernel_(light_kernel()), sky_(scene, &camera) {}
 
@@ -47,7 +47,9 @@ public:
   float sky_weight(uint32_t lane, const Scattering &from) const;
 
 private:
-  void meet_lamp(size_t first, uint32_t lanes, uint32_t light);
+  // Meets a light of the tree of many lights with a ray of the block.
+  void visit(uint32_t lane, uint32_t light) override { meet_alone(first_ + lane, light); }
+  void meet_lamp(uint32_t lanes, uint32_t light);
   void meet_alone(size_t ray, uint32_t light);
   bool is_on_segment(size_t ray, const LightHit &hit) const;
   void add(size_t ray, uint32_t light, const LightHit &hit, double chosen);
@@ -63,6 +65,7 @@ private:
   std::span<const Hit> hits_;
   std::span<const Scattering> from_;
   std::vector<MetLight> met_;
+  size_t first_ = 0; // ray of the block
   SegmentBlock segments_{};
   MetBlock block_{};
   SkyBlock misses_{};
