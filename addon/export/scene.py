@@ -68,7 +68,7 @@ def export_scene(depsgraph, options=None, poll=None):
     else:
         exported = parts.shader(sky, messages, lambda told, pictures: export_world(sky, pictures, depsgraph, told))
     table, meshes = instances.to_table(obey), instances.meshes
-    # Cycles' views keep meshes where they are; only final renders move meshes.
+    # Only final renders of Cycles transform meshes to the world, which changes normals.
     if parts is None:
         meshes, table = with_even_normals(meshes, table, instances.geometries, materials.list)
     snapshot = SceneSnapshot(

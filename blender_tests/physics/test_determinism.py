@@ -167,6 +167,15 @@ def test_debug_sample_tells_the_path():
     assert np.allclose(rgba[:3], 0.8, rtol=0.5)
 
 
+def test_debug_sample_tells_the_same_vertices_with_any_passes():
+    """A path that ends at a dark surface tells this vertex, although no light comes from it."""
+    numbers = []
+    for passes in ((Pass.COMBINED,), (Pass.COMBINED, Pass.NORMAL)):
+        with Session.upload(showroom(8, samples=1, max_bounces=0, passes=passes)) as session:
+            numbers.append([len(session.debug_sample(x, y, 0)[1]) for y in range(8) for x in range(8)])
+    assert numbers[0] == numbers[1] and max(numbers[0]) > 1
+
+
 def test_debug_vertices_are_cut_at_capacity():
     snapshot = tiny_scenes.furnace(0.99, 0.1, max_bounces=50)
     with Session.upload(snapshot) as session:

@@ -18,8 +18,9 @@ namespace lancer {
 
 enum class IntegratorKind : uint32_t { Path = 0, Classic = 1, Normals = 2 };
 
-// Splitting of a sample (Arvo, Kirk, "Particle transport and image synthesis", 1990). The sample splits at the first surface of
-// its path that scatters into more than single directions. The place on the pixel and the path before the split are shared.
+// Splitting of a sample (Arvo, Kirk, "Particle transport and image synthesis", 1990). The sample splits at the first surface
+// that scatters its path into more than single directions. A surface that its path passes straight may also take several light
+// samples. The place on the pixel and the path before the split are shared.
 struct Splits {
   uint32_t lights = 1; // lights sampled there
   uint32_t paths = 1;  // paths continued from there

@@ -23,14 +23,14 @@ class Environment {
 public:
   // Makes a black environment.
   Environment() = default;
-  // The world, images and normalisation must outlive the environment; the images may still be loading while it is constructed.
-  // Where the radiance varies, the constructor evaluates it in all directions and makes the sampling maps. No camera is known
-  // at that time: where nodes read the camera, the map is a guess, and the uniform share of the samples covers the rest.
-  // Surfaces sample in proportion to the radiance above the mean, because BSDF samples find the rest equally well (Karlik et
-  // al., "MIS Compensation: Optimizing Sampling Techniques in Multiple Importance Sampling", 2019). Under two pictures of the
-  // sky, this leaves 0.48 and 0.83 of the variance. Glass samples from a second map, proportional to the radiance as in Cycles.
-  // It needs that density because the light that a rough boundary transmits between two directions that no facet connects
-  // depends on the density of light samples (Bsdf::eval_lit).
+  // The world, images and normalisation must outlive the environment. Where the radiance differs between directions, the
+  // constructor evaluates it in all of them and makes the sampling maps. No camera is known at that time: where nodes read the
+  // camera, the map is a guess, and the uniform share of the samples covers the rest. Surfaces sample in proportion to the
+  // radiance above the mean, because BSDF samples find the rest equally well (Karlik et al., "MIS Compensation: Optimizing
+  // Sampling Techniques in Multiple Importance Sampling", 2019). Under two pictures of the sky, this leaves 0.48 and 0.83 of
+  // the variance. Glass samples from a second map, proportional to the radiance as in Cycles. It needs that density because the
+  // light that a rough boundary transmits between two directions that no facet connects depends on the density of light samples
+  // (Bsdf::eval_lit).
   Environment(const World &world, const std::vector<Image> &images, const Normalisation &normalisation,
               const BuildContext &context, bool glass);
 

@@ -76,8 +76,8 @@ LANCER_LANE Vector2<DoubleOf<F>> pair_shares(const LightQueryLanes<F> &query, co
   using D = DoubleOf<F>;
   Importance<F> parts[2] = {node_importance(query, tree, pair), node_importance(query, tree, pair + 1)};
   raise(parts, 2);
-  // Use the upper bounds alone: the lower bound of a cluster is mostly 0 and would make the shares equal, with five times the
-  // variance under 200 lamps.
+  // Use the upper bounds alone between clusters, but not between near and distant lights (pair 0): the lower bound of a cluster
+  // is mostly 0 and would make the shares equal, with five times the variance under 200 lamps.
   if (pair != 0 && (tree.nodes[pair].count != 1 || tree.nodes[pair + 1].count != 1)) {
     const D zero(0.0), left = widen(parts[0].most), right = widen(parts[1].most), sum = left + right;
     return {select(sum > zero, left / sum, zero), select(sum > zero, right / sum, zero)};

@@ -4,10 +4,10 @@ namespace lancer {
 
 namespace {
 
-// Paths of a batch: enough to fill the queues without leaving the second-level cache.
+// Samples of one call of the integrator: enough to fill the queues without leaving the second-level cache.
 constexpr uint32_t kBatch = 1024;
-// A batch takes more samples of the covered pixels where some pixels of a tile are not covered. The batch's results, including
-// those of uncovered pixels, fill at most this many batches.
+// A batch for the film takes more samples of the covered pixels where some pixels of a tile are not covered. Its results,
+// including those of uncovered pixels, are at most this many times kBatch, unless one sample of each pixel is more.
 constexpr uint32_t kMostBatches = 2;
 
 // Returns a sample that contains only the hit of the camera ray.

@@ -8,7 +8,7 @@ namespace lancer {
 
 namespace {
 
-// Replaces a node by its children that the ray hits, the nearest on top.
+// Replaces a node by its children that the ray hits, the nearest by the octant of the ray's direction on top.
 LANCER_LANE void visit_node(Flight &s) {
   const Slab &ray = s.slab;
   const BvhNode &node = *reinterpret_cast<const BvhNode *>(s.at);

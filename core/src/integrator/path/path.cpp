@@ -93,7 +93,7 @@ void PathIntegrator::add_lamps() {
   }
 }
 
-// Adds the environment that paths see behind all surfaces.
+// Adds the environment that paths see behind all surfaces. A constant one is no light that is sampled: its weight is 1.
 void PathIntegrator::add_environment() {
   const Environment &environment = scene_.lights.environment();
   for (size_t i = 0; i < missed_.size() && !environment.varies(); ++i)
@@ -113,8 +113,8 @@ void PathIntegrator::add_environment() {
   }
 }
 
-// Adds a hit to the block, unless it ends its path and adds nothing to the picture, which alone this batch fills. max_bounces
-// counts the scatterings after the first.
+// Adds a hit to the block. Skips a hit that neither scatters, emits, passes light nor cuts a hole, where the batch fills the
+// picture alone. max_bounces counts the scatterings after the first.
 void PathIntegrator::put_in_lane(size_t number, const Material &material) {
   const Path &path = queue_.paths[number];
   const Hit &hit = hits_[number];

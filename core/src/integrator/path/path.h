@@ -26,20 +26,22 @@ public:
         hit_(scene, camera, !film_.passes.guides()), met_(scene, camera), queues_(scene), textures_(scene),
         surface_(scene, camera, settings), light_(scene, &camera), occlusion_(scene, settings),
         shadow_(scene, camera, settings), last_bounces_(settings.max_bounces) {
-    // A vertex takes one light and one path, unless its sample splits.
-    std::fill_n(lights_, kBlockLanes, 1.0);
-    std::fill_n(paths_, kBlockLanes, 1.0);
+    PathIntegrator::set_splits(settings.splits);
   }
 
   void run(std::span<const SampleAddress> addresses, std::span<SampleResult> results, std::vector<PathVertex> *trace) override;
   void set_splits(const Splits &splits) override {
+    // A vertex takes one light and one path, unless its sample splits.
+    std::fill_n(lights_, kBlockLanes, 1.0);
+    std::fill_n(paths_, kBlockLanes, 1.0);
     settings_.splits = splits;
     film_.set_splits(splits);
   }
   const char *name() const override { return "path"; }
 
 private:
-  // Paths on their way: paths[i] goes along rays[i], which left its last scattering from[i].
+  // Paths on their way: paths[i] goes along rays[i]. Its last scattering is from[i]; where it has passed surfaces since, the
+  // ray starts at the last of them.
   struct Queue {
     std::vector<Path> paths;
     std::vector<Ray> rays;

@@ -9,8 +9,8 @@ namespace lancer {
 void PathFilm::begin(std::span<const SampleAddress> addresses, std::span<SampleResult> results,
                      std::vector<PathVertex> *trace) {
   trace_ = trace;
-  // Passes of places are recorded from the first sample of each pixel alone.
-  only_combined_ = passes.only_places() && (!passes.places() || addresses.front().sample > 0);
+  // Passes of places are recorded from the first sample of each pixel alone; a trace records all vertices.
+  only_combined_ = !trace && passes.only_places() && (!passes.places() || addresses.front().sample > 0);
   results_ = results;
   energy = {};
   indirect_.assign(results.size() * sums(), glm::vec3(0.0f));

@@ -83,8 +83,9 @@ struct alignas(64) FaceBlock {
   Floats ng[3];
 };
 
-// The light of the samples without occlusion, for the bits lit. origin: start of the shadow ray, off the surface on the side of
-// wi.
+// The light of the samples without occlusion, for the bits lit: beta f |cos(wi)| radiance w / (pdf count). w is the weight
+// against BSDF samples, by the power heuristic with one sample of each technique; 1 for single directions. CLASSIC has a
+// formula of its own. origin: start of the shadow ray, off the surface on the side of wi.
 struct alignas(64) LitBlock {
   Floats contribution[3];
   Floats share[2][3]; // diffuse and glossy share, where shares are wanted

@@ -1,7 +1,7 @@
 // Light that rays run into: lamps on their way, surfaces that emit, the environment behind all surfaces.
 //
 // In: rays, their hits, and the last scatterings of their paths, from the integrator. Out: radiance of lamps and of a varying
-// environment towards the ray's origin, and the weight of all light, also of surfaces, by the power heuristic
+// environment towards the last scattering, and the weight of all light, also of surfaces, by the power heuristic
 // (lights/sample_light.h), because light sampling may have found the same light. Lengths are in the normalised world, densities
 // per solid angle. Caller: PATH.
 #pragma once
@@ -16,7 +16,7 @@ struct Scattering {
   glm::dvec3 p{0.0};
   glm::vec3 n{0.0f};      // shading normal
   bool transmits = false; // some lobe scatters light to the other side
-  double pdf = 0.0;       // of the BSDF sample that gave the ray; 0 after the camera or a single direction
+  double pdf = 0.0;       // ScatterBlock::pdf of the ray; 0 after the camera or a single direction
   double passed = 0.0;    // normalised distance to the ray's origin, through transparent surfaces
 
   LightQuery query() const { return LightQuery(p, n, transmits); }

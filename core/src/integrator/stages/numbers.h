@@ -22,7 +22,8 @@ enum VertexDimension : uint32_t {
   kVertexLightDigits = 7, // more digits of the choice, which a million faces need
   kVertexStride = 8
 };
-// Crossings have dimensions of their own, far behind the others.
+// The decisions at crossings have dimensions of their own, far behind the others; light samples there share those of the next
+// vertex.
 inline constexpr uint32_t kDimensionOpacity = 1u << 16;
 // One more than the largest number of surfaces that a path may pass straight through.
 inline constexpr uint32_t kMaxCrossings = 1025;

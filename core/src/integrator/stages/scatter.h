@@ -12,7 +12,7 @@ namespace lancer {
 
 struct alignas(64) ScatterBlock {
   Doubles origin[3]; // of the next ray, on the side of wi
-  Doubles pdf;       // of a scattered path's wi, with the share of paths that are scattered; 0: a single direction
+  Doubles pdf;       // of wi among all paths: pdf_scattered (1 - LobeBlock::pass); 0: a single direction
   Floats wi[3], beta[3];
   Floats pdf_scattered; // of wi among scattered paths, 0: a single direction
   Floats alpha2;        // alpha_x alpha_y of the sampled lobe, 0 for a single direction

@@ -38,7 +38,8 @@ struct alignas(64) SurfaceBlock {
 // The materials at the surfaces, and what their nodes say.
 struct alignas(64) MaterialBlock {
   const Material *material[kBlockLanes];           // all of one class
-  Floats transmittance[3], through;                // by describe(); by add() and ask_nodes(): the mean of the transmittance
+  Floats transmittance[3];                         // by describe()
+  Floats through;                                  // by add() and ask_nodes(): the mean of the transmittance
   const float (*values)[4][kBlockLanes] = nullptr; // of nodes, four floats for every lane, by ask_nodes()
   uint32_t holes = 0;                              // bits of lanes: lobes are hidden by a hole; by cut_holdouts()
   uint32_t ends = 0;                               // bits of lanes: the surface scatters no light
