@@ -97,7 +97,7 @@ private:
   // The block, by lane.
   size_t path_[kBlockLanes];     // of the path
   uint32_t leader_[kBlockLanes]; // number of the leader among the branches
-  Floats beta_[3];
+  Floats beta_[3] = {};
   Doubles lights_, paths_; // sampled at the vertex
   // Bits of its lanes.
   uint32_t ends_ = 0;            // the vertex scatters no light

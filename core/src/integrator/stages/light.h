@@ -16,8 +16,8 @@
 
 namespace lancer {
 
-// Directions to the environment, and the density with which its map gives them. u: by the light stage; wi: by the kernel or the
-// stage of met lights; pdf: by the kernel.
+// Directions to the environment, and the density with which its map gives them. u: in [0, 1) in all lanes, by the light stage;
+// wi: by the kernel or the stage of met lights; pdf: by the kernel.
 struct alignas(64) SkyBlock {
   Floats u[2];
   Doubles wi[3], pdf; // wi: unit
@@ -50,7 +50,7 @@ public:
 private:
   const Scene &scene_;
   DirectionTable maps_[2]; // by transmits
-  NodeBlock nodes_;
+  NodeBlock nodes_{};
   std::vector<NodeLanes> values_;
 };
 

@@ -65,12 +65,12 @@ public:
   // Together, the branches are then distributed as evenly as the samples of an unsplit sequence.
   void draw(uint32_t wanted, uint32_t count, uint32_t splitting = 0, uint32_t branches = 1, uint32_t branch = 0);
 
-  VertexNumbers numbers;
+  VertexNumbers numbers{}; // kernels also look up tables by the numbers of lanes without a sample
 
 private:
   const NumberKernel &kernel_;
   SampleDigits digits_{};
-  Words sample_, dimension_;
+  Words sample_{}, dimension_{};
   bool same_ = true; // all lanes have the same dimension
 };
 

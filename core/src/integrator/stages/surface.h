@@ -179,7 +179,7 @@ private:
   LobeBlock lobes_{};
   MeanBlock means_{};
   glm::vec3 emission_[kBlockLanes], transmittance_[kBlockLanes]; // of the material
-  NodeBlock nodes_;
+  NodeBlock nodes_{};
   std::vector<NodeLanes> values_;
   std::vector<Bytes> storage_;
 };
