@@ -210,7 +210,7 @@ std::string ReadyLobe::code() const {
 std::shared_ptr<const ReadyLobe[]> make_ready_lobes(const Material &material) {
   // Placeholders for the results of nodes. Values derived from a placeholder are not used.
   const std::vector<glm::vec4> nothing(material.program.nodes.size(), glm::vec4(0.0f));
-  const std::shared_ptr<ReadyLobe[]> all(new ReadyLobe[material.lobes.size()]);
+  const auto all = std::make_shared<ReadyLobe[]>(material.lobes.size());
   for (size_t i = 0; i < material.lobes.size(); ++i) {
     const LobeDescription &lobe = material.lobes[i];
     ReadyLobe &ready = all[i];
