@@ -31,7 +31,7 @@ LANCER_LANE bool within_edges(const double x[3], const double y[3], double w[3])
   int sides = 0;
   for (int i = 0; i < 3; ++i) {
     const int j = i == 2 ? 0 : i + 1, k = j == 2 ? 0 : j + 1;
-    // Both products have rounded to the same number: the edge function is the difference of their rounding errors, or zero.
+    // Recompute an edge function that has rounded to zero: it is the difference of the rounding errors of both products.
     if (w[i] == 0.0)
       w[i] = difference_of_products(x[k], y[j], y[k], x[j]);
     const double side = w[i] != 0.0 ? w[i] : y[k] != y[j] ? y[k] - y[j] : x[j] - x[k];

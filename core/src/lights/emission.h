@@ -37,8 +37,7 @@ private:
   Bsdf<float> bsdf_; // scratch for emission below layers
 };
 
-// The emitting faces of a mesh and the choice among them. Instances of one mesh with the same
-// materials share this record.
+// The emitting faces of a mesh and the choice among them. Instances of one mesh with the same materials share this record.
 class EmissiveFaces {
 public:
   // of_mesh: the tree is made in the object's space and serves all instances, with the emission that this instance has;

@@ -23,8 +23,7 @@ struct alignas(64) SkyBlock {
   Doubles wi[3], pdf; // wi: unit
 };
 
-// The environment for lanes of directions: its radiance there, and directions sampled by its
-// brightness.
+// The environment for lanes of directions: its radiance there, and directions sampled by its brightness.
 class SkyStage {
 public:
   SkyStage(const Scene &scene, const Camera *camera);
