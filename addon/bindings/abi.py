@@ -12,7 +12,7 @@ from . import elf
 from .enums import *  # noqa: F403 - abi is the one name under which others find the whole interface
 from .enums import ABI_VERSION, Status
 from .structs import *  # noqa: F403
-from .structs import STRUCTS, Camera, Error, Image, Light, Material, Mesh, Node, Progress, Settings, Statistics, World
+from .structs import STRUCTS, Camera, DenoisedError, Error, Image, Light, Material, Mesh, Node, Progress, Settings, Statistics, World
 from .structs import Array as _Array
 
 _FILES = {"win32": ("lancer", ".dll"), "darwin": ("liblancer", ".dylib")}
@@ -43,6 +43,10 @@ _CALLS = {
     "lancer_session_stop": (_u64,),
     "lancer_session_refine": (_u64, c_double, c_double),
     "lancer_session_error": (_u64, c_double, POINTER(Error)),
+    "lancer_combine_denoised": (
+        *(_u32, _u32, _Array, _Array, _Array, _Array),
+        *(c_double, _u32, c_double, _u32, _Array, _Array, POINTER(DenoisedError)),
+    ),
     "lancer_session_read": (_u64, _u32, _Array, c_size_t),
     "lancer_session_statistics": (_u64, POINTER(Statistics)),
     "lancer_debug_sample": (_u64, _u32, _u32, _u32, _Array, _Array, _u32, POINTER(_u32)),

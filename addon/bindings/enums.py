@@ -5,7 +5,7 @@ Generated from core/include/lancer.h by `make bindings`; changes here are lost.
 
 from enum import IntEnum, IntFlag
 
-ABI_VERSION = 8
+ABI_VERSION = 9
 MOST_NODES = 4096
 DEEPEST_RECURSION = 16
 
@@ -43,6 +43,7 @@ class Struct(IntEnum):
     WORLD = 18
     LOBE_INFO = 19
     ERROR = 20
+    DENOISED_ERROR = 21
 
 
 class NormalDomain(IntEnum):
@@ -511,7 +512,10 @@ class Pass(IntEnum):
     DENOISING_NORMAL = 21
     DENOISING_DEPTH = 22
     ERROR = 23
+    HALVES = 24
+    ALBEDO_HALVES = 25
+    NORMAL_HALVES = 26
 
     @property
     def channels(self):
-        return (4, 1, 3, 3, 3, 1, 1, 3, 1, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 1, 1)[self]
+        return (4, 1, 3, 3, 3, 1, 1, 3, 1, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 1, 1, 3, 3, 3)[self]

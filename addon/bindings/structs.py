@@ -324,6 +324,17 @@ class Error(Structure):
     ]
 
 
+class DenoisedError(Structure):
+    """The error of a denoised picture, in the unit of lancer_error."""
+
+    _fields_ = [
+        ("error", c_double),
+        ("low", c_double),
+        ("high", c_double),
+        ("moved", c_double),
+    ]
+
+
 class Vertex(Structure):
     """One vertex of a replayed sample."""
 
@@ -412,6 +423,7 @@ STRUCTS = {
     Struct.WORLD: World,
     Struct.LOBE_INFO: LobeInfo,
     Struct.ERROR: Error,
+    Struct.DENOISED_ERROR: DenoisedError,
 }
 
 # Kind and default of each parameter, from lancer.h.

@@ -32,7 +32,7 @@ extern "C" {
 #endif
 
 /* Incremented with each change of a struct or a call of this header. */
-#define LANCER_ABI_VERSION 8u
+#define LANCER_ABI_VERSION 9u
 
 /* Limits: nodes of a material or world; recursion of CLASSIC, in which glass doubles the rays with every depth. */
 #define LANCER_MOST_NODES 4096u
@@ -83,6 +83,7 @@ typedef enum lancer_struct {
   LANCER_STRUCT_WORLD,
   LANCER_STRUCT_LOBE_INFO,
   LANCER_STRUCT_ERROR,
+  LANCER_STRUCT_DENOISED_ERROR,
   LANCER_STRUCT_COUNT
 } lancer_struct;
 /* Returns sizeof the struct with this lancer_struct number, or 0 for an unknown number, so that a caller can refuse a stale
@@ -800,7 +801,12 @@ enum lancer_pass {
   LANCER_PASS_DENOISING_NORMAL = 21,      /* [3] camera space, mean */
   LANCER_PASS_DENOISING_DEPTH = 22,       /* [1] mean */
   LANCER_PASS_ERROR = 23, /* [1] standard error of the mean luminance; infinity below two samples per pixel. Always kept */
-  LANCER_PASS_COUNT = 24
+  /* Half the difference of two pictures, each of one half of the samples: it has the variance of the pass, and is independent
+   * of the noise of the pass. 0 below two samples per pixel. */
+  LANCER_PASS_HALVES = 24,        /* [3] of COMBINED */
+  LANCER_PASS_ALBEDO_HALVES = 25, /* [3] */
+  LANCER_PASS_NORMAL_HALVES = 26, /* [3] of DENOISING_NORMAL */
+  LANCER_PASS_COUNT = 27
 };
 
 /* How a scene is rendered. Each comment begins with kind, default and, where there is one, the largest value: a choice of an
@@ -838,7 +844,7 @@ typedef struct lancer_settings {
                                 over surfaces by their share of matt lobes, as in 5.2 */
   uint32_t features;         /* [choice 0 1] LANCER_FEATURES_SCENE: only the work that the scene requires; ALL: work for all
                                 features. Same pixels */
-  uint32_t passes;           /* [bits 1 16777215] 1u << LANCER_PASS_*; COMBINED is always kept */
+  uint32_t passes;           /* [bits 1 134217727] 1u << LANCER_PASS_*; COMBINED is always kept */
   uint32_t threads;          /* [number 0 1024] 0 = one per processor */
   uint32_t tile_size;        /* [number 0] pixels; 0 = automatic. Changes no pixel */
   uint32_t refines;          /* [switch 0] lancer_session_refine will be called */
@@ -908,6 +914,24 @@ typedef struct lancer_error {
 } lancer_error;
 /* Returns the error of the film's current state at a confidence in (0, 1). Allowed while rendering. */
 LANCER_API lancer_status lancer_session_error(lancer_session session, double confidence, lancer_error *error);
+
+/* The error of a denoised picture, in the unit of lancer_error. */
+typedef struct lancer_denoised_error {
+  double error;     /* of the result */
+  double low, high; /* confidence interval of the error at the given confidence */
+  double moved; /* light that denoising alone has moved: root mean square of the difference of means of 16 x 16 pixels between
+                   the denoised and the noisy picture, beyond noise */
+} lancer_denoised_error;
+/* Combines a picture with two denoised versions of it, and estimates the error of the result. All pictures are
+ * [height][width][3], linear, finite. noisy: the pass COMBINED without alpha; noise: the pass HALVES, from at least two
+ * samples; first, second: a denoiser's results for noisy + step noise and noisy - step noise, with step in (0, 1]. combines: 1
+ * = the result is the combination with the least estimated error, which converges with the samples; 0 = the mean of first and
+ * second. picture: receives the result, and may be one of the inputs. bars: receives the standard error of the mean luminance
+ * of each block, [(height + block - 1) / block][(width + block - 1) / block]; block: side in pixels, 1 = of each pixel. */
+LANCER_API lancer_status lancer_combine_denoised(uint32_t width, uint32_t height, const float *noisy, const float *noise,
+                                                 const float *first, const float *second, double step, uint32_t combines,
+                                                 double confidence, uint32_t block, float *picture, float *bars,
+                                                 lancer_denoised_error *error);
 
 /* ---- replay ------------------------------------------------------------------------------------------------------ */
 

@@ -1,11 +1,14 @@
 // The C interface: checks handles and pointers, turns exceptions into statuses, and calls the rooms.
 #include "lancer_probes.h"
 #include "objects.h"
+#include "render/denoised.h"
 #include "render/session.h"
 #include "scene/fill.h"
 #include "simd/processor.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace {
 
@@ -28,6 +31,9 @@ void check_confidence(const char *what, double confidence) {
     bad_argument(std::string(what) + ": confidence " + std::to_string(confidence) + " must be between 0 and 1");
 }
 
+// Longest side of a picture that comes in arrays, far above Blender's.
+constexpr uint32_t kLongestSide = 1u << 20;
+
 void copy_text(char *target, size_t size, const std::string &text) { std::snprintf(target, size, "%s", text.c_str()); }
 
 } // namespace
@@ -45,7 +51,7 @@ uint32_t lancer_sizeof(uint32_t which) {
       sizeof(lancer_progress),     sizeof(lancer_statistics),  sizeof(lancer_hit),       sizeof(lancer_vertex),
       sizeof(lancer_light_sample), sizeof(lancer_bsdf_sample), sizeof(lancer_attribute), sizeof(lancer_image),
       sizeof(lancer_node),         sizeof(lancer_principled),  sizeof(lancer_world),     sizeof(lancer_lobe_info),
-      sizeof(lancer_error)};
+      sizeof(lancer_error), sizeof(lancer_denoised_error)};
   return which < LANCER_STRUCT_COUNT ? uint32_t(sizes[which]) : 0;
 }
 
@@ -269,6 +275,39 @@ lancer_status lancer_session_error(lancer_session session, double confidence, la
     const PictureError &picture = from.picture;
     *error = {picture.error, picture.low,          picture.high,       picture.cannot_exclude, from.clipped,
               from.missing,  from.planned_samples, from.least_samples, from.most_samples};
+    return LANCER_OK;
+  });
+}
+
+lancer_status lancer_combine_denoised(uint32_t width, uint32_t height, const float *noisy, const float *noise,
+                                      const float *first, const float *second, double step, uint32_t combines,
+                                      double confidence, uint32_t block, float *picture, float *bars,
+                                      lancer_denoised_error *error) {
+  return guard([&] {
+    const size_t numbers = 3 * size_t(width) * height;
+    if (numbers == 0 || width > kLongestSide || height > kLongestSide)
+      bad_argument("combine_denoised: " + std::to_string(width) + " x " + std::to_string(height) + " pixels");
+    const std::pair<const char *, const float *> inputs[] = {
+        {"noisy", noisy}, {"noise", noise}, {"first", first}, {"second", second}};
+    for (const auto &[name, values] : inputs) {
+      const std::string what = std::string("combine_denoised: ") + name;
+      require(values, what.c_str());
+      if (!std::all_of(values, values + numbers, [](float value) { return std::isfinite(value); }))
+        bad_argument(what + " is not finite everywhere");
+    }
+    require(picture, "combine_denoised: picture");
+    require(bars, "combine_denoised: bars");
+    require(error, "combine_denoised: error");
+    check_confidence("combine_denoised", confidence);
+    if (!(step > 0.0 && step <= 1.0))
+      bad_argument("combine_denoised: step " + std::to_string(step) + " must be above 0 and at most 1");
+    if (combines > 1 || block == 0)
+      bad_argument("combine_denoised: combines " + std::to_string(combines) + ", block " + std::to_string(block));
+    std::vector<float> errors;
+    const DenoisedError from =
+        combine_denoised({width, height, noisy, noise, first, second, step, combines != 0}, confidence, block, picture, errors);
+    std::copy(errors.begin(), errors.end(), bars);
+    *error = {from.error, from.low, from.high, from.moved};
     return LANCER_OK;
   });
 }

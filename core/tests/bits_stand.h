@@ -155,12 +155,12 @@ public:
     ASSERT_EQ(status, LANCER_OK) << lancer_last_error();
   }
 
-  // Hashes every pass and the error. refine: number of refinement rounds. The picture rendered alone, by kernels of many lanes
-  // where possible, must have the same bits.
+  // Hashes every pass of samples and the error. refine: number of refinement rounds. The picture rendered alone, by kernels of
+  // many lanes where possible, must have the same bits.
   void render(int refine = 0) {
     const uint32_t passes = settings.passes;
     run(refine);
-    for (uint32_t pass = 0; pass < LANCER_PASS_COUNT; ++pass)
+    for (uint32_t pass = 0; pass <= LANCER_PASS_ERROR; ++pass)
       for (const float value : read(pass))
         hash.add(value);
     lancer_error error;

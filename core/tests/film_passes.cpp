@@ -131,6 +131,39 @@ TEST(FilmPasses, WhatAPassShowsDoesNotDependOnTheOthers) {
   }
 }
 
+// The tree of sums as it is defined: means of the earlier and the later half of the samples [first, first + count).
+double half_difference(const std::vector<SampleResult> &results, size_t first, size_t count) {
+  double earlier = 0.0, later = 0.0;
+  for (size_t i = 0; i < count / 2; ++i) {
+    earlier += double(results[first + i].radiance.y);
+    later += double(results[first + count / 2 + i].radiance.y);
+  }
+  return (earlier - later) / double(count);
+}
+
+TEST(FilmPasses, HalvesCompareTheHalvesOfEachSum) {
+  const auto results = synthetic(13);
+  const auto of = [&](uint32_t count) {
+    return read(*film_of({results.begin(), results.begin() + count}, bit(Pass::Halves)), Pass::Halves)[1];
+  };
+  // The sums are rounded to double, and their difference to float.
+  EXPECT_FLOAT_EQ(of(8), float(half_difference(results, 0, 8)));
+  EXPECT_FLOAT_EQ(of(12), float(8.0 / 12 * half_difference(results, 0, 8) + 4.0 / 12 * half_difference(results, 8, 4)));
+  // The thirteenth sample has no half: it is compared with the mean of the others.
+  double before = 0.0;
+  for (size_t i = 0; i < 12; ++i)
+    before += double(results[i].radiance.y) / 12;
+  EXPECT_FLOAT_EQ(of(13), float(8.0 / 13 * half_difference(results, 0, 8) + 4.0 / 13 * half_difference(results, 8, 4) +
+                                1.0 / 13 * (double(results[12].radiance.y) - before)));
+  EXPECT_EQ(of(1), 0.0f);
+}
+
+TEST(FilmPasses, HalvesBringTheirPass) {
+  EXPECT_EQ(kept_passes(bit(Pass::NormalHalves)), bit(Pass::Combined) | bit(Pass::DenoisingNormal));
+  EXPECT_EQ(Film::bytes_needed(1, 1, bit(Pass::NormalHalves), 1), kPlain + 3 * sizeof(double) + 3 * sizeof(float));
+  EXPECT_EQ(Film::bytes_needed(1, 1, bit(Pass::Halves), 1), kPlain + 3 * sizeof(float));
+}
+
 TEST(FilmPasses, AreKeptOnlyWhereAskedFor) {
   const uint32_t direct = 1u << LANCER_PASS_GLOSSY_DIRECT;
   const Film film(1, 1, 1, direct);

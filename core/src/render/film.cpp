@@ -33,6 +33,12 @@ Film::Layout::Layout(uint32_t passes) {
     at[i] = next;
     next += channels(pass);
   }
+  for (const Pass pass : {Pass::Halves, Pass::AlbedoHalves, Pass::NormalHalves})
+    if (passes & bit(pass)) {
+      halves.push_back(pass);
+      at[uint32_t(pass)] = difference_channels;
+      difference_channels += channels(pass);
+    }
 }
 
 void Film::Layout::add(std::vector<Run> &runs, Pass pass, uint32_t to) {
@@ -85,7 +91,7 @@ double Film::bytes_needed(double width, double height, uint32_t passes, uint32_t
   // The largest number of waiting sums occurs at a count with all bits set.
   const int levels = std::bit_width(uint64_t(samples) + 1) - 1;
   return width * height *
-         ((double(layout.summed_channels) * sizeof(double) + sizeof(float)) * levels +
+         ((double(layout.summed_channels) * sizeof(double) + double(1 + layout.difference_channels) * sizeof(float)) * levels +
           double(layout.first_channels + 1) * sizeof(float));
 }
 
@@ -104,6 +110,7 @@ void Film::add(Tile &tile, uint32_t samples, std::span<const SampleResult> resul
       tile.levels.resize(level + 1);
     carry.channels.resize(size_t(pixels) * layout_.summed_channels);
     carry.differences.assign(pixels, 0.0f);
+    carry.color_differences.assign(size_t(pixels) * layout_.difference_channels, 0.0f);
     gather(results.subspan(size_t(s) * pixels, pixels), carry, tile.brightest.data());
     // A new leaf is joined with every complete neighbour, smaller sample numbers first. All pixels have the same count.
     for (uint32_t joined = 0; joined < level; ++joined) {
@@ -125,6 +132,7 @@ void Film::add_even(Tile &tile, uint32_t samples, const SampleResult &result) {
   Sums leaf;
   leaf.channels.resize(size_t(pixels) * layout_.summed_channels);
   leaf.differences.assign(pixels, 0.0f);
+  leaf.color_differences.assign(size_t(pixels) * layout_.difference_channels, 0.0f);
   if (tile.count == 0) {
     keep_first(tile, results);
     tile.brightest.resize(pixels);
@@ -207,15 +215,27 @@ void Film::keep_first(Tile &tile, std::span<const SampleResult> results) const {
                   tile.first.data() + size_t(pixel) * layout_.first_channels + run.to);
 }
 
+glm::dvec3 Film::mean_color(Pass pass, const Sums &sums, uint32_t level, uint32_t pixel) const {
+  const double *color = sums.channels.data() + size_t(pixel) * layout_.summed_channels + layout_.at[uint32_t(pass)];
+  return glm::dvec3(color[0], color[1], color[2]) / double(1u << level);
+}
+
 double Film::mean_luminance(const Sums &sums, uint32_t level, uint32_t pixel) const {
-  const double *color = sums.channels.data() + size_t(pixel) * layout_.summed_channels;
-  return luminance(glm::dvec3(color[0], color[1], color[2])) / double(1u << level);
+  return luminance(mean_color(Pass::Combined, sums, level, pixel));
 }
 
 // Stores the differences of two halves before they are joined; each half has 2^level samples.
 void Film::keep_differences(const Sums &earlier, uint32_t level, Sums &later) const {
   for (uint32_t pixel = 0; pixel < later.differences.size(); ++pixel)
     later.differences[pixel] = float(mean_luminance(earlier, level, pixel) - mean_luminance(later, level, pixel));
+  for (const Pass pass : layout_.halves)
+    for (uint32_t pixel = 0; pixel < later.differences.size(); ++pixel) {
+      const Pass of = halved(pass);
+      const glm::dvec3 apart = mean_color(of, earlier, level, pixel) - mean_color(of, later, level, pixel);
+      for (uint32_t i = 0; i < 3; ++i)
+        later.color_differences[size_t(pixel) * layout_.difference_channels + layout_.at[uint32_t(pass)] + i] =
+            float(apart[int(i)]);
+    }
 }
 
 // Stores one sample of all pixels in the layout of the sums.
@@ -260,7 +280,8 @@ size_t Film::bytes() const {
     bytes += sizeof(Tile) + (tile->first.capacity() + tile->brightest.capacity()) * sizeof(float);
     bytes += tile->dropped.capacity() * sizeof(uint64_t);
     for (const Sums &level : tile->levels)
-      bytes += sizeof(level) + level.channels.capacity() * sizeof(double) + level.differences.capacity() * sizeof(float);
+      bytes += sizeof(level) + level.channels.capacity() * sizeof(double) +
+               (level.differences.capacity() + level.color_differences.capacity()) * sizeof(float);
   }
   return bytes;
 }

@@ -17,7 +17,9 @@ uint32_t channels(Pass pass);
 bool of_first_sample(Pass pass);
 // Returns the colour that a direct or indirect pass is divided by, or the pass itself if there is none.
 Pass divisor(Pass pass);
-// Returns the requested passes, together with Combined and all divisors.
+// Returns the pass whose halves a pass of halves compares, or the pass itself.
+Pass halved(Pass pass);
+// Returns the passes that the film sums for the requested ones: with Combined, divisors and halved passes.
 uint32_t kept_passes(uint32_t passes);
 
 // Returns the index of a pass's first channel among the floats of a sample.
@@ -50,10 +52,11 @@ public:
   // Returns the largest memory, in bytes, that a film of this size uses while it receives that number of samples per pixel.
   static double bytes_needed(double width, double height, uint32_t passes, uint32_t samples);
 
-  // A complete subtree: [pixel][summed channel], and [pixel] the difference of its halves' mean luminances, 0 for a leaf.
+  // A complete subtree: [pixel][summed channel]; [pixel] the difference of its halves' mean luminances, 0 for a leaf; for
+  // passes of halves the same of their mean colours, [pixel][channel].
   struct Sums {
     std::vector<double> channels;
-    std::vector<float> differences;
+    std::vector<float> differences, color_differences;
   };
 
   struct Tile {
@@ -127,15 +130,23 @@ private:
     static void add(std::vector<Run> &runs, Pass pass, uint32_t to);
 
     std::vector<Run> summed, first;
+    std::vector<Pass> halves;
     std::array<uint32_t, kPassCount> at{}; // first channel of a pass in its list
-    uint32_t summed_channels = 0, first_channels = 0;
+    uint32_t summed_channels = 0, first_channels = 0, difference_channels = 0;
   };
 
   static void forget_joined(Tile &tile);
   void keep_first(Tile &tile, std::span<const SampleResult> results) const;
   void gather(std::span<const SampleResult> results, Sums &sums, float *brightest) const;
   void keep_differences(const Sums &earlier, uint32_t level, Sums &later) const;
+  glm::dvec3 mean_color(Pass pass, const Sums &sums, uint32_t level, uint32_t pixel) const;
   double mean_luminance(const Sums &sums, uint32_t level, uint32_t pixel) const;
+  // Joins the waiting sums of a pixel that has at least two samples, larger ones first. mean_of(sums, level): the mean of a
+  // sum; difference_of(sums): the difference of its halves; part(share, apart): receives half of that, with the sum's share of
+  // the samples. Returns the mean of all.
+  template <class Value, class MeanOf, class DifferenceOf, class Part>
+  static Value join_halves(const Tile &tile, MeanOf &&mean_of, DifferenceOf &&difference_of, Part &&part);
+  void read_halves(Pass pass, const Tile &tile, uint32_t pixel, float *target) const;
   void read_means(Pass pass, const Tile &tile, uint32_t pixel, float *target) const;
 
   uint32_t width_, height_, passes_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <glm/gtc/type_ptr.hpp>
 #include <limits>
 #include <type_traits>
 
@@ -40,12 +41,27 @@ Pass divisor(Pass pass) {
   return static_cast<Pass>(uint32_t(Pass::DiffuseColor) + 3 * component);
 }
 
+Pass halved(Pass pass) {
+  switch (pass) {
+  case Pass::Halves:
+    return Pass::Combined;
+  case Pass::AlbedoHalves:
+    return Pass::Albedo;
+  case Pass::NormalHalves:
+    return Pass::DenoisingNormal;
+  default:
+    return pass;
+  }
+}
+
 uint32_t kept_passes(uint32_t passes) {
-  passes &= ~bit(Pass::Error);
-  uint32_t kept = passes | bit(Pass::Combined);
-  for (uint32_t pass = 0; pass < kPassCount; ++pass) {
-    if (passes & 1u << pass)
-      kept |= bit(divisor(static_cast<Pass>(pass)));
+  uint32_t kept = bit(Pass::Combined);
+  for (uint32_t number = 0; number < kPassCount; ++number) {
+    const auto pass = static_cast<Pass>(number);
+    if (!(passes & bit(pass)) || pass == Pass::Error)
+      continue;
+    // Halves follow from the sums of their pass.
+    kept |= bit(halved(pass)) | bit(divisor(halved(pass)));
   }
   return kept;
 }
@@ -118,6 +134,8 @@ void Film::read(Pass pass, std::span<float> out) const {
         std::fill_n(target, width, pass == Pass::Depth ? kNothing : 0.0f);
       else if (of_first_sample(pass))
         std::copy_n(tile->first.data() + size_t(pixel) * layout_.first_channels + layout_.at[uint32_t(pass)], width, target);
+      else if (halved(pass) != pass)
+        read_halves(pass, *tile, pixel, target);
       else
         read_means(pass, *tile, pixel, target);
     }
@@ -151,23 +169,44 @@ void Film::read_means(Pass pass, const Tile &tile, uint32_t pixel, float *target
   }
 }
 
+template <class Value, class MeanOf, class DifferenceOf, class Part>
+Value Film::join_halves(const Tile &tile, MeanOf &&mean_of, DifferenceOf &&difference_of, Part &&part) {
+  Value mean(0.0);
+  for (uint32_t level = uint32_t(tile.levels.size()); level-- > 0;) {
+    if (!tile.waits(level))
+      continue;
+    const Sums &sums = tile.levels[level];
+    const double share = double(1u << level) / double(tile.count);
+    const Value of_sums = mean_of(sums, level);
+    // A single sample is compared with the mean of all samples before it.
+    part(share, level > 0 ? 0.5 * Value(difference_of(sums)) : of_sums - mean / (1.0 - share));
+    mean += share * of_sums;
+  }
+  return mean;
+}
+
+void Film::read_halves(Pass pass, const Tile &tile, uint32_t pixel, float *target) const {
+  glm::dvec3 sum(0.0);
+  const size_t place = size_t(pixel) * layout_.difference_channels + layout_.at[uint32_t(pass)];
+  if (tile.count >= kLeastSamples)
+    join_halves<glm::dvec3>(
+        tile, [&](const Sums &sums, uint32_t level) { return mean_color(halved(pass), sums, level, pixel); },
+        [&](const Sums &sums) { return glm::make_vec3(sums.color_differences.data() + place); },
+        [&](double share, const glm::dvec3 &apart) { sum += share * apart; });
+  for (int i = 0; i < 3; ++i)
+    target[i] = float(sum[i]);
+}
+
 uint32_t Film::luminances(const Tile &tile, std::span<Luminance> out) const {
   const std::lock_guard lock(tile.mutex);
   if (tile.count < kLeastSamples)
     return 0;
   for (uint32_t pixel = 0; pixel < tile.pixels(); ++pixel) {
-    double mean = 0.0, variance = 0.0;
-    // Each waiting sum is weighted by its share of the samples; a single sample is compared with the mean of all samples before
-    // it.
-    for (uint32_t level = uint32_t(tile.levels.size()); level-- > 0;) {
-      if (!tile.waits(level))
-        continue;
-      const Sums &sums = tile.levels[level];
-      const double share = double(1u << level) / double(tile.count), of_sums = mean_luminance(sums, level, pixel);
-      const double apart = level > 0 ? 0.5 * double(sums.differences[pixel]) : of_sums - mean / (1.0 - share);
-      mean += share * of_sums;
-      variance += share * share * apart * apart;
-    }
+    double variance = 0.0;
+    const auto mean = join_halves<double>(
+        tile, [&](const Sums &sums, uint32_t level) { return mean_luminance(sums, level, pixel); },
+        [&](const Sums &sums) { return sums.differences[pixel]; },
+        [&](double share, double apart) { variance += share * share * apart * apart; });
     out[pixel] = {mean, variance, double(tile.brightest[pixel])};
   }
   return tile.count;

@@ -150,16 +150,6 @@ namespace {
 constexpr uint32_t kSquare = 16;
 constexpr double kThree = 3.0;
 
-// Returns z such that a Gaussian number lies within +- z with this probability.
-double gaussian_reach(double confidence) {
-  double low = 0.0, high = 40.0;
-  while (high - low > 1e-12) {
-    const double middle = 0.5 * (low + high);
-    (erf(middle / std::sqrt(2.0)) < confidence ? low : high) = middle;
-  }
-  return low;
-}
-
 double mean_over(const LuminanceMap &map, const std::vector<float> &variance) {
   double sum = 0.0;
   for (size_t i = 0; i < variance.size(); ++i)
@@ -192,6 +182,15 @@ double unmet(const LuminanceMap &map) {
 }
 
 } // namespace
+
+double gaussian_reach(double confidence) {
+  double low = 0.0, high = 40.0;
+  while (high - low > 1e-12) {
+    const double middle = 0.5 * (low + high);
+    (erf(middle / std::sqrt(2.0)) < confidence ? low : high) = middle;
+  }
+  return low;
+}
 
 RelativeVariance::RelativeVariance(const LuminanceMap &map) : own(map.size()), shared(map.size()) {
   const SimilarNeighbours similar(map);

@@ -55,6 +55,9 @@ struct PictureError {
   double cannot_exclude = kUnknown;
 };
 
+// Returns z such that a Gaussian number lies within +- z with this probability.
+double gaussian_reach(double confidence);
+
 // The contribution of each pixel to the error.
 struct RelativeVariance {
   // [height][width]: variance of one sample, over the square of luminance plus floor. own: from the pixel's own halves; shared:

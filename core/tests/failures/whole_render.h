@@ -17,7 +17,7 @@ struct RenderKind {
 
 inline constexpr uint32_t kWholeSide = 8;
 // All passes of the picture in sequence.
-inline constexpr size_t kWholeFloats = size_t(kWholeSide) * kWholeSide * 64;
+inline constexpr size_t kWholeFloats = size_t(kWholeSide) * kWholeSide * 80;
 
 // The first call that failed, if any; after it only destroying calls were made.
 struct RenderOutcome {

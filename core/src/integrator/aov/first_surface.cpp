@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace lancer {
 
@@ -75,13 +76,17 @@ DenoisingGuides begin_guides(const IntegratorSettings &settings, bool wanted) {
   return guides;
 }
 
-void add_denoising_guides(const Scene &scene, const Camera &camera, const Mixture<float> &mixture, const glm::vec3 &wo,
-                          const glm::vec3 &transmittance, double distance, DenoisingGuides &guides, SampleResult &result) {
-  // Subtract the distance of the near clipping surface.
-  if (guides.first)
-    distance -= near_distance(camera, glm::dvec3(-wo));
+void add_guide_distance(const Scene &scene, const Camera &camera, const glm::vec3 &wo, double distance, DenoisingGuides &guides,
+                        SampleResult &result) {
+  // Subtract the distance of the near clipping surface, or the counted part.
+  distance -= guides.first ? near_distance(camera, glm::dvec3(-wo)) : std::exchange(guides.counted, 0.0);
   guides.first = false;
   result.denoising_depth += guides.share * mean(guides.beta) * nearest_float(distance / scene.normalisation.scale);
+}
+
+void add_denoising_guides(const Scene &scene, const Camera &camera, const Mixture<float> &mixture, const glm::vec3 &wo,
+                          const glm::vec3 &transmittance, double distance, DenoisingGuides &guides, SampleResult &result) {
+  add_guide_distance(scene, camera, wo, distance, guides, result);
   const glm::vec3 normal = camera.direction_to_camera(glm::dvec3(mixture.normal));
   if (guides.blended) {
     // Add the matt share, or all lobes where half of them is matt; the rest and the transmitted light continue to the next

@@ -34,14 +34,18 @@ struct DenoisingGuides {
   bool open = false; // the surface that ends the search is still to come
   bool first = true; // no surface has been hit yet
   bool blended = false;
-  float share = 1.0f; // of the pixel's sample, where a path has split
+  float share = 1.0f;   // of the pixel's sample, where a path has split
+  double counted = 0.0; // distance along the current ray that is already counted, normalised units
   glm::vec3 beta{1.0f};
 };
 
 // Returns the state at the start of a camera path.
 DenoisingGuides begin_guides(const IntegratorSettings &settings, bool wanted);
 
-// Adds the current surface, whose distance (normalised units) is measured from the previous surface.
+// Adds the distance of a surface, in normalised units, from the start of the ray.
+void add_guide_distance(const Scene &scene, const Camera &camera, const glm::vec3 &wo, double distance, DenoisingGuides &guides,
+                        SampleResult &result);
+// Adds the current surface with its distance.
 void add_denoising_guides(const Scene &scene, const Camera &camera, const Mixture<float> &mixture, const glm::vec3 &wo,
                           const glm::vec3 &transmittance, double distance, DenoisingGuides &guides, SampleResult &result);
 // Records the sky behind transparent surfaces.

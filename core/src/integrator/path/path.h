@@ -21,11 +21,9 @@ namespace lancer {
 class PathIntegrator final : public Integrator {
 public:
   PathIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
-      : scene_(scene), settings_(settings), camera_(camera, settings), film_(scene, camera, settings),
-        // Denoising guides sum the distances between surfaces: with them, rays hit absent surfaces, too.
-        hit_(scene, camera, !film_.passes.guides()), met_(scene, camera), queues_(scene), textures_(scene),
-        surface_(scene, camera, settings), light_(scene, &camera), occlusion_(scene, settings),
-        shadow_(scene, camera, settings), last_bounces_(settings.max_bounces) {
+      : scene_(scene), settings_(settings), camera_(camera, settings), film_(scene, camera, settings), hit_(scene, camera),
+        met_(scene, camera), queues_(scene), textures_(scene), surface_(scene, camera, settings), light_(scene, &camera),
+        occlusion_(scene, settings), shadow_(scene, camera, settings), last_bounces_(settings.max_bounces) {
     PathIntegrator::set_splits(settings.splits);
   }
 

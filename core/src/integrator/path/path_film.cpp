@@ -163,14 +163,15 @@ void PathFilm::pass_absent(Path &path, const Ray &ray, HitStage &stage, size_t n
   const uint32_t count = stage.passed(number, end);
   if (only_combined_ && !trace_ && count <= path.crossings_left(limit))
     return path.count_crossings(count, limit);
+  double passed = 0.0;
   for (const Crossing &crossing : stage.absent(number)) {
     const Hit &met = crossing.hit;
     if (!closer(met.t, met.instance, met.primitive, end))
-      return;
+      break;
     // A path that has reached its limit ends here.
     if (path.crossings_left(limit) == 0) {
       hit = met;
-      return;
+      break;
     }
     // Passes may also record a surface of low opacity.
     if (trace_ || awaits_surface(path)) {
@@ -188,6 +189,14 @@ void PathFilm::pass_absent(Path &path, const Ray &ray, HitStage &stage, size_t n
       }
     }
     path.count_crossings(1, limit);
+    passed = met.t;
+  }
+  // A surface that the guides do not count may follow.
+  if (passed > 0.0 && wants_guides(path)) {
+    DenoisingGuides &guides = guides_[path.sample];
+    const double distance = passed * glm::length(ray.d);
+    add_guide_distance(scene_, camera_, glm::vec3(-glm::normalize(ray.d)), distance, guides, results_[path.sample]);
+    guides.counted = distance;
   }
 }
 

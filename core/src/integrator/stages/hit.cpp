@@ -84,9 +84,9 @@ std::span<const Crossing> Crossings::sort(size_t ray, bool clear) {
   return sorted_;
 }
 
-HitStage::HitStage(const Scene &scene, const Camera &camera, bool crosses)
+HitStage::HitStage(const Scene &scene, const Camera &camera)
     : HitFilter(scene.perforated_instances.data()), scene_(scene), shader_(scene, &camera), crossings_(scene.geometry),
-      crosses_(crosses && (scene.features & kFeatureTransparency) &&
+      crosses_((scene.features & kFeatureTransparency) &&
                std::ranges::find(scene.perforated_instances, 1) != scene.perforated_instances.end()) {}
 
 void HitStage::find(std::span<const Ray> rays, std::span<const uint32_t> left, std::vector<Hit> &hits) {

@@ -60,10 +60,9 @@ private:
 
 class HitStage final : HitFilter {
 public:
-  // crosses: whether rays may pass absent surfaces in one traversal; otherwise they hit them.
-  HitStage(const Scene &scene, const Camera &camera, bool crosses);
+  HitStage(const Scene &scene, const Camera &camera);
 
-  // Whether rays may pass absent surfaces, so that find() needs left.
+  // Whether rays may pass absent surfaces in one traversal, so that find() needs left.
   bool crosses() const { return crosses_; }
   // Finds the closest hits. left: by ray, the number of surfaces that the ray may pass.
   void find(std::span<const Ray> rays, std::span<const uint32_t> left, std::vector<Hit> &hits);

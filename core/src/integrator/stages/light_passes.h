@@ -61,7 +61,7 @@ private:
   static constexpr uint32_t kAnyGuide = bit(Pass::Albedo) | bit(Pass::DenoisingNormal) | bit(Pass::DenoisingDepth);
   static constexpr uint32_t kPlaces =
       bit(Pass::Depth) | bit(Pass::Position) | bit(Pass::ObjectIndex) | bit(Pass::MaterialIndex);
-  static constexpr uint32_t kAlways = bit(Pass::Combined) | bit(Pass::Error);
+  static constexpr uint32_t kAlways = bit(Pass::Combined) | bit(Pass::Error) | bit(Pass::Halves);
   bool wanted_, components_, occlusion_, mist_, uv_, guides_, places_, only_places_;
 };
 

@@ -1,0 +1,325 @@
+#include "render/denoised.h"
+
+#include "render/picture_error.h"
+#include "sampling/elementary.h"
+#include "simd/vectors.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <vector>
+
+namespace lancer {
+
+namespace {
+
+// A picture of one number or of three numbers a pixel.
+template <class Value> struct Grid {
+  uint32_t width = 0, height = 0;
+  std::vector<Value> values;
+
+  Grid(uint32_t w, uint32_t h) : width(w), height(h), values(size_t(w) * h, Value(0.0f)) {}
+  Value *row(uint32_t y) { return values.data() + size_t(y) * width; }
+  const Value *row(uint32_t y) const { return values.data() + size_t(y) * width; }
+};
+using Colors = Grid<glm::vec3>;
+using Numbers = Grid<float>;
+
+// Returns the place i of an infinite row that repeats the row of count places mirrored at its ends.
+uint32_t mirrored(int64_t i, uint32_t count) {
+  const int64_t period = 2 * int64_t(count);
+  i = (i % period + period) % period;
+  return uint32_t(i < count ? i : period - 1 - i);
+}
+
+// Returns the convolution with a symmetric kernel in both directions; kernel: from its middle on. step: of the kept pixels.
+template <class Value> Grid<Value> convolved(const Grid<Value> &grid, std::span<const float> kernel, uint32_t step = 1) {
+  const auto reach = int64_t(kernel.size()) - 1;
+  const uint32_t width = (grid.width + step - 1) / step, height = (grid.height + step - 1) / step;
+  Grid<Value> rows(grid.width, height), result(width, height);
+  for (uint32_t y = 0; y < height; ++y)
+    for (int64_t d = -reach; d <= reach; ++d) {
+      const Value *from = grid.row(mirrored(int64_t(y) * step + d, grid.height));
+      const float weight = kernel[size_t(std::abs(d))];
+      Value *to = rows.row(y);
+      for (uint32_t x = 0; x < grid.width; ++x)
+        to[x] += weight * from[x];
+    }
+  std::vector<Value> wide(grid.width + 2 * size_t(reach));
+  for (uint32_t y = 0; y < height; ++y) {
+    const Value *from = rows.row(y);
+    for (size_t i = 0; i < wide.size(); ++i)
+      wide[i] = from[mirrored(int64_t(i) - reach, grid.width)];
+    Value *to = result.row(y);
+    for (int64_t d = -reach; d <= reach; ++d) {
+      const float weight = kernel[size_t(std::abs(d))];
+      for (uint32_t x = 0; x < width; ++x)
+        to[x] += weight * wide[size_t(int64_t(x) * step + d + reach)];
+    }
+  }
+  return result;
+}
+
+// The kernel of the pyramid.
+constexpr std::array<float, 3> kSmall = {6.0f / 16.0f, 4.0f / 16.0f, 1.0f / 16.0f};
+
+// Returns the kernel of a neighbourhood whose weights fall to 0 at this distance, each raised to a power.
+std::vector<float> tent(int reach, int power = 1) {
+  std::vector<float> kernel;
+  for (int d = 0; d < reach; ++d) {
+    const float weight = float(reach - d) / float(reach * reach);
+    kernel.push_back(power == 1 ? weight : weight * weight);
+  }
+  return kernel;
+}
+
+Colors reduced(const Colors &fine) { return convolved<glm::vec3>(fine, kSmall, 2); }
+
+// Adds a coarser level times a sign to a finer one, interpolated with the pyramid's kernel.
+void add_expanded(const Colors &coarse, float sign, Colors &fine) {
+  const auto at = [](const glm::vec3 *line, uint32_t place, uint32_t count, uint32_t stride) {
+    const uint32_t i = place / 2;
+    const auto value = [&](int64_t k) { return line[size_t(std::clamp<int64_t>(k, 0, int64_t(count) - 1)) * stride]; };
+    return place % 2 == 0 ? 0.125f * value(int64_t(i) - 1) + 0.75f * value(i) + 0.125f * value(int64_t(i) + 1)
+                          : 0.5f * value(i) + 0.5f * value(int64_t(i) + 1);
+  };
+  std::vector<glm::vec3> line(coarse.width);
+  for (uint32_t y = 0; y < fine.height; ++y) {
+    for (uint32_t x = 0; x < coarse.width; ++x)
+      line[x] = at(coarse.values.data() + x, y, coarse.height, coarse.width);
+    glm::vec3 *to = fine.row(y);
+    for (uint32_t x = 0; x < fine.width; ++x)
+      to[x] += sign * at(line.data(), x, coarse.width, 1);
+  }
+}
+
+// The residual R, the noise H, and the part of the noise that the denoiser takes, H - G.
+struct Level {
+  Colors residual, noise, taken;
+};
+
+// The neighbourhood of 9 x 9 in which a share is estimated, and the standard deviations by which its noise may exceed the mean.
+constexpr int kShareReach = 5;
+constexpr float kDoubt = 2.0f;
+
+// Returns the share of the residual that is not noise.
+Numbers shares(const Level &band) {
+  Numbers noise(band.residual.width, band.residual.height), squares = noise, power = noise;
+  for (size_t i = 0; i < noise.values.size(); ++i) {
+    noise.values[i] = glm::dot(band.noise.values[i], band.taken.values[i]);
+    squares.values[i] = noise.values[i] * noise.values[i];
+    power.values[i] = glm::dot(band.residual.values[i], band.residual.values[i]);
+  }
+  noise = convolved<float>(noise, tent(kShareReach));
+  power = convolved<float>(power, tent(kShareReach));
+  squares = convolved<float>(squares, tent(kShareReach, 2));
+  for (size_t i = 0; i < noise.values.size(); ++i) {
+    const float most = noise.values[i] + kDoubt * std::sqrt(squares.values[i]);
+    noise.values[i] = power.values[i] > 0.0f ? std::clamp(1.0f - most / power.values[i], 0.0f, 1.0f) : 0.0f;
+  }
+  return noise;
+}
+
+constexpr uint32_t kLevels = 6, kLeastSide = 8;
+
+// Replaces residual and taken by their shares, band by band. level: the number of coarser levels that may follow.
+void keep_shares(Level &level, uint32_t levels) {
+  const bool last = levels == 0 || std::min(level.residual.width, level.residual.height) < 2 * kLeastSide;
+  Level coarse{last ? Colors(0, 0) : reduced(level.residual), last ? Colors(0, 0) : reduced(level.noise),
+               last ? Colors(0, 0) : reduced(level.taken)};
+  if (!last) {
+    add_expanded(coarse.residual, -1.0f, level.residual);
+    add_expanded(coarse.noise, -1.0f, level.noise);
+    add_expanded(coarse.taken, -1.0f, level.taken);
+  }
+  const Numbers share = shares(level);
+  for (size_t i = 0; i < share.values.size(); ++i) {
+    level.residual.values[i] *= share.values[i];
+    level.taken.values[i] *= share.values[i];
+  }
+  if (last)
+    return;
+  keep_shares(coarse, levels - 1);
+  add_expanded(coarse.residual, 1.0f, level.residual);
+  add_expanded(coarse.taken, 1.0f, level.taken);
+}
+
+// Bound of relative colours, so that fourth powers fit into floats.
+constexpr float kMost = 1e8f;
+
+// Values are divided by the luminance of the denoised picture plus 1 % of its mean, as in the error of a picture.
+class Scale {
+public:
+  Scale(const DenoisedInput &input) {
+    const size_t pixels = size_t(input.width) * input.height;
+    levels_.resize(pixels);
+    double sum = 0.0;
+    for (size_t i = 0; i < pixels; ++i) {
+      const glm::dvec3 mean = 0.5 * (color(input.first, i) + color(input.second, i));
+      sum += levels_[i] = std::abs(luminance(mean));
+    }
+    dark = !(sum > 0.0);
+    for (double &level : levels_)
+      level = dark ? 1.0 : level + 0.01 * sum / double(pixels);
+    unit = dark ? 1.0 : sum / double(pixels);
+  }
+  static glm::dvec3 color(const float *picture, size_t i) { return {picture[3 * i], picture[3 * i + 1], picture[3 * i + 2]}; }
+  double of(size_t i) const { return levels_[i]; }
+  glm::vec3 relative(const glm::dvec3 &value, size_t i) const {
+    return glm::clamp(glm::vec3(value / levels_[i]), glm::vec3(-kMost), glm::vec3(kMost));
+  }
+
+  bool dark = false;
+  double unit = 1.0; // mean luminance
+
+private:
+  std::vector<double> levels_;
+};
+
+// Luminances from which errors follow: the difference Z - Y, the noise H, and the noise Hz that Z keeps.
+struct Differences {
+  Numbers apart, noise, kept;
+
+  Differences(uint32_t width, uint32_t height) : apart(width, height), noise(width, height), kept(width, height) {}
+
+  // Returns the means over blocks.
+  Differences blocks(uint32_t side) const {
+    Differences result((apart.width + side - 1) / side, (apart.height + side - 1) / side);
+    Numbers counts = result.apart;
+    for (uint32_t y = 0; y < apart.height; ++y)
+      for (uint32_t x = 0; x < apart.width; ++x) {
+        result.apart.row(y / side)[x / side] += apart.row(y)[x];
+        result.noise.row(y / side)[x / side] += noise.row(y)[x];
+        result.kept.row(y / side)[x / side] += kept.row(y)[x];
+        counts.row(y / side)[x / side] += 1.0f;
+      }
+    for (Numbers *sums : {&result.apart, &result.noise, &result.kept})
+      for (size_t i = 0; i < sums->values.size(); ++i)
+        sums->values[i] /= counts.values[i];
+    return result;
+  }
+};
+
+// Returns the squared error at each place, from means over neighbourhoods that reach so far.
+Numbers squared_errors(const Differences &of, int reach) {
+  const std::vector<float> kernel = tent(reach);
+  const auto mean_of = [&](const Numbers &a, const Numbers &b) {
+    Numbers product(a.width, a.height);
+    for (size_t i = 0; i < product.values.size(); ++i)
+      product.values[i] = a.values[i] * b.values[i];
+    return convolved<float>(product, kernel);
+  };
+  const Numbers apart = mean_of(of.apart, of.apart), noise = mean_of(of.noise, of.noise);
+  const Numbers common = mean_of(of.kept, of.noise), kept = mean_of(of.kept, of.kept);
+  Numbers result(apart.width, apart.height);
+  for (size_t i = 0; i < result.values.size(); ++i) {
+    // The product of kept noise and noise is the variance that is left: squares of the kept noise would include the difference
+    // of two results that no noise causes.
+    const float left = std::max(common.values[i], 0.0f);
+    // The noise of Y - Z.
+    const float taken = std::max(noise.values[i] - 2.0f * left + std::min(kept.values[i], left), 0.0f);
+    // Noise is told too large where the variance falls faster than 1 / N: Y - Z shows by how much at least.
+    const float told = apart.values[i] < taken ? apart.values[i] / taken : 1.0f;
+    result.values[i] = std::max(apart.values[i] - taken, 0.0f) + told * left;
+  }
+  return result;
+}
+
+// Reaches of the neighbourhoods for the error's middle and the two ends of its interval.
+constexpr int kReach = 9, kFarReach = 33, kNearReach = 5;
+
+constexpr int kBlockReach = 3; // in blocks
+
+double root_mean(const Numbers &squares) {
+  double sum = 0.0;
+  for (const float square : squares.values)
+    sum += double(square);
+  return std::sqrt(sum / double(squares.values.size()));
+}
+
+// A neighbourhood that is small tells noise as error, since no squared error is negative; one that is large hides errors of few
+// pixels in the noise of the others. These are the two ends of the interval, widened by the spread of sums over pixels.
+DenoisedError error_of(const Differences &of, double confidence) {
+  const Numbers squares = squared_errors(of, kReach);
+  const double middle = root_mean(squares), far = root_mean(squared_errors(of, kFarReach)),
+               near = root_mean(squared_errors(of, kNearReach));
+  double sum = 0.0, fourth = 0.0;
+  for (const float square : squares.values) {
+    sum += double(square);
+    fourth += double(square) * double(square);
+  }
+  // As for the error of a picture, with the pixels of a neighbourhood as one.
+  const double spread = sum > 0.0 ? 0.5 * std::sqrt(2.0 * fourth * kReach * kReach) / sum : 0.0;
+  const double reach = exp(gaussian_reach(confidence) * spread);
+  return {.error = middle, .low = std::min(far, middle) / reach, .high = std::max(near, middle) * reach};
+}
+
+// Side of the blocks in which moved light is looked for.
+constexpr uint32_t kBlock = 16;
+
+// Returns the root mean square of block means of the residual beyond noise.
+double moved_light(const Level &level) {
+  Differences of(level.residual.width, level.residual.height);
+  for (size_t i = 0; i < of.apart.values.size(); ++i) {
+    of.apart.values[i] = luminance(level.residual.values[i]);
+    of.noise.values[i] = luminance(level.taken.values[i]);
+  }
+  const Differences blocks = of.blocks(kBlock);
+  double sum = 0.0;
+  for (size_t i = 0; i < blocks.apart.values.size(); ++i)
+    sum += double(blocks.apart.values[i]) * blocks.apart.values[i] - double(blocks.noise.values[i]) * blocks.noise.values[i];
+  return std::sqrt(std::max(0.0, sum / double(blocks.apart.values.size())));
+}
+
+} // namespace
+
+DenoisedError combine_denoised(const DenoisedInput &input, double confidence, uint32_t block, float *picture,
+                               std::vector<float> &bars) {
+  const uint32_t width = input.width, height = input.height;
+  const size_t pixels = size_t(width) * height;
+  const Scale scale(input);
+  // Find the residual, the noise and the part of it that the denoiser takes, all relative to the picture.
+  Level level{Colors(width, height), Colors(width, height), Colors(width, height)};
+  const auto denoised = [&](size_t i) { return 0.5 * (Scale::color(input.first, i) + Scale::color(input.second, i)); };
+  for (size_t i = 0; i < pixels; ++i) {
+    const glm::dvec3 noise = Scale::color(input.noise, i);
+    const glm::dvec3 left = (Scale::color(input.first, i) - Scale::color(input.second, i)) / (2.0 * input.step);
+    level.residual.values[i] = scale.relative(Scale::color(input.noisy, i) - denoised(i), i);
+    level.noise.values[i] = scale.relative(noise, i);
+    level.taken.values[i] = scale.relative(noise - left, i);
+  }
+  const double moved = moved_light(level);
+  Differences of(width, height);
+  for (size_t i = 0; i < pixels; ++i) {
+    of.apart.values[i] = -luminance(level.residual.values[i]);
+    of.noise.values[i] = luminance(level.noise.values[i]);
+    of.kept.values[i] = luminance(level.noise.values[i] - level.taken.values[i]);
+  }
+  // Add the share of the residual that is not noise, and the noise that comes with it.
+  if (input.combines)
+    keep_shares(level, kLevels);
+  for (size_t i = 0; i < pixels; ++i) {
+    const glm::vec3 kept = input.combines ? level.residual.values[i] : glm::vec3(0.0f);
+    const glm::dvec3 result = denoised(i) + glm::dvec3(kept) * scale.of(i);
+    for (int c = 0; c < 3; ++c)
+      picture[3 * i + size_t(c)] = nearest_float(result)[c];
+    if (input.combines) {
+      of.apart.values[i] += luminance(kept);
+      of.kept.values[i] += luminance(level.taken.values[i]);
+    }
+  }
+  // Estimate the error of the result.
+  DenoisedError error = error_of(of, confidence);
+  error.moved = moved;
+  for (size_t i = 0; i < pixels; ++i)
+    for (Numbers *values : {&of.apart, &of.noise, &of.kept})
+      values->values[i] = std::clamp(values->values[i] * float(scale.of(i) / scale.unit), -kMost, kMost);
+  const Numbers squares = block > 1 ? squared_errors(of.blocks(block), kBlockReach) : squared_errors(of, kReach);
+  bars.resize(squares.values.size());
+  for (size_t i = 0; i < bars.size(); ++i)
+    bars[i] = nearest_float(scale.unit * std::sqrt(double(squares.values[i])));
+  return error;
+}
+
+} // namespace lancer
