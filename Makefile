@@ -31,6 +31,7 @@ CLONES ?=
 PX ?=
 SCENES ?=
 SEED ?=
+DENOISED ?=
 
 python := $(VENV)/bin/python
 core := build/core
@@ -126,9 +127,10 @@ features: packages-run python-run build ## measure the cost of each feature, use
 pilot: packages-run python-run build ## fit the pilot's cost model to measured times: make pilot [QUICK=1] [ONLY='glass*']
 	@$(python) $(tools) pilot.run $(if $(QUICK),--quick) $(if $(ONLY),--only '$(ONLY)')
 
-tradeoff: packages-run python-charts build ## measure error against time: make tradeoff [BLEND=file.blend] [SAMPLES=n] [OUT=folder] [QUICK=1] [README=1]
+tradeoff: packages-run python-charts build ## measure error against time: make tradeoff [BLEND=file.blend] [SAMPLES=n] [OUT=folder] [QUICK=1] [README=1] [DENOISED=1 [ONLY='balls*']]
 	@$(python) $(tools) tradeoff.run $(if $(BLEND),--blend "$(BLEND)") $(if $(SAMPLES),--samples $(SAMPLES)) \
-	  $(if $(OUT),--output "$(OUT)") $(if $(QUICK),--quick) $(if $(README),--readme)
+	  $(if $(OUT),--output "$(OUT)") $(if $(QUICK),--quick) $(if $(README),--readme) \
+	  $(if $(DENOISED),--denoised $(if $(OUT),,--output build/denoised)) $(if $(ONLY),--only '$(ONLY)')
 
 accuracy: packages-run python-run build ## check the error that renders report: make accuracy [QUICK=1] [ONLY='glass*']
 	@$(python) $(tools) accuracy.run $(if $(QUICK),--quick) $(if $(ONLY),--only '$(ONLY)')

@@ -243,7 +243,8 @@ def set_size(scene, width, height, samples):
     scene.render.resolution_percentage = 100
     scene.render.image_settings.file_format = "PNG"
     if hasattr(scene, "lancer"):
-        scene.lancer.samples = samples
+        scene.lancer.quality, scene.lancer.samples, scene.lancer.target_error = "CUSTOM", samples, 0.0
+        scene.lancer.use_denoising = False
 
 
 def add_passes(scene):

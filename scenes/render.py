@@ -105,7 +105,7 @@ def set_up(scene, arguments):
     """Applies the options of this run to the scene; the file is never saved."""
     scene.render.engine = "LANCER"
     if arguments.samples is not None:
-        scene.lancer.samples = arguments.samples
+        scene.lancer.quality, scene.lancer.samples, scene.lancer.target_error = "CUSTOM", arguments.samples, 0.0
         for layer in scene.view_layers:
             layer.samples = 0
     if arguments.frame is not None:

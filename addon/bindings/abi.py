@@ -12,7 +12,21 @@ from . import elf
 from .enums import *  # noqa: F403 - abi is the one name under which others find the whole interface
 from .enums import ABI_VERSION, Status
 from .structs import *  # noqa: F403
-from .structs import STRUCTS, Camera, DenoisedError, Error, Image, Light, Material, Mesh, Node, Progress, Settings, Statistics, World
+from .structs import (
+    STRUCTS,
+    Camera,
+    DenoisedError,
+    Error,
+    Image,
+    Light,
+    Material,
+    Mesh,
+    Node,
+    Progress,
+    Settings,
+    Statistics,
+    World,
+)
 from .structs import Array as _Array
 
 _FILES = {"win32": ("lancer", ".dll"), "darwin": ("liblancer", ".dylib")}

@@ -480,7 +480,7 @@ SETTINGS = {
     "integrator": ("choice", 0),
     "samples": ("number", 256),
     "seed": ("number", 0),
-    "max_bounces": ("number", 10),
+    "max_bounces": ("number", 12),
     "contribution_threshold": ("amount", 0.0),
     "clamp_indirect": ("amount", 0.0),
     "split_lights": ("number", 1),

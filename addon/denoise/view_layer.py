@@ -1,24 +1,21 @@
-"""Denoising of a view layer's finished picture.
-
-Denoising is a guess, which no figure about accuracy includes: DECLARATION accompanies each such figure.
-"""
+"""Denoising of a view layer's finished picture, and the error of the denoised picture."""
 
 import dataclasses
 import functools
+import math
 import time
 
 from ..bindings.abi import LancerError
 from ..bindings.enums import Pass
-from ..bindings.session import Cancelled, Session
-from ..host.priority import lowered
+from ..bindings.session import Cancelled
 from . import denoiser, oidn
+from .plan import FASTEST, plan
 
-DECLARATION = "denoised: the error given is that of the picture before denoising"
+DECLARATION = "denoised: a guess that can remove details; its own error is told beside that of the picture before denoising"
 
 AS_IT_IS = "the picture is shown with its noise"
-# The network's guides, as in Cycles by default.
-_GUIDES = (Pass.ALBEDO, Pass.DENOISING_NORMAL)
-_GUIDE_SAMPLES = 32
+# Passes of the picture's own samples: guides of the network as in Cycles by default, and the noise of each.
+PASSES = (Pass.ALBEDO, Pass.DENOISING_NORMAL, Pass.HALVES, Pass.ALBEDO_HALVES, Pass.NORMAL_HALVES)
 
 
 def wanted(scene, view_layer):
@@ -43,22 +40,47 @@ def ready(scene, view_layer):
     return wanted(scene, view_layer) and not missing()
 
 
-def apply(session, poll=None, tell=None):
+def prepared(settings, shown=()):
+    """Return the settings of a session whose picture is to be denoised. shown: passes that the user sees."""
+    guides_shown = {Pass.ALBEDO, Pass.DENOISING_NORMAL, Pass.DENOISING_DEPTH} & set(shown)
+    return dataclasses.replace(
+        settings,
+        passes=tuple(sorted({*settings.passes, *PASSES})),
+        # The rule of 5.2 serves the network better where surfaces are transparent; passes that are shown follow Blender.
+        blended_features=settings.blended_features or not guides_shown,
+    )
+
+
+def inputs(session):
+    """Return the arguments of denoiser.denoise for a session's picture."""
+    pixels = session.camera.region_width * session.camera.region_height
+    samples = session.statistics().samples / pixels
+    noise = None
+    if session.error().known:
+        noise = denoiser.Noise(*(session.read(source) for source in (Pass.HALVES, Pass.ALBEDO_HALVES, Pass.NORMAL_HALVES)))
+    return {
+        "color": session.read(Pass.COMBINED),
+        "albedo": session.read(Pass.ALBEDO),
+        "normal": session.read(Pass.DENOISING_NORMAL),
+        "noise": noise,
+        "plan": plan(pixels, samples),
+        "threads": session.settings.threads,
+    }
+
+
+def apply(session, combines=True, poll=None, tell=None):
     """Return (Denoised, "") of the session's picture, (None, "") if poll cancelled, or (None, reason) if denoising failed.
 
-    tell(text) reports progress.
+    combines: whether the samples may take part in the result. tell(text) reports progress.
     """
     started = time.monotonic()
+
+    def working(fraction):
+        if tell is not None:
+            tell(f"Denoising {fraction:.0%}")
+
     try:
-        guides = _guides(session, poll, tell)
-        color = session.read(Pass.COMBINED)
-        threads = session.settings.threads
-
-        def working(fraction):
-            if tell is not None:
-                tell(f"Denoising {fraction:.0%}")
-
-        denoised = denoiser.denoise(color, *guides, threads=threads, poll=poll, tell=working)
+        denoised = denoiser.denoise(**inputs(session), combines=combines, poll=poll, tell=working)
         return dataclasses.replace(denoised, seconds=time.monotonic() - started), ""
     except Cancelled:
         return None, ""
@@ -68,31 +90,28 @@ def apply(session, poll=None, tell=None):
         return None, f"{error}; {AS_IT_IS}"
 
 
-def _guides(session, poll, tell):
-    """Return albedo and normal of the picture's first samples; raise Cancelled by poll.
-
-    They are rendered separately, since few samples suffice: as passes they would slow down every sample of the picture.
-    """
-    if set(_GUIDES) <= set(session.settings.passes):
-        return [session.read(source) for source in _GUIDES]
-    if tell is not None:
-        tell("Denoising: rendering albedo and normals")
-    rendered = session.statistics().samples // (session.camera.region_width * session.camera.region_height)
-    samples = max(1, min(rendered, _GUIDE_SAMPLES))
-    settings = dataclasses.replace(session.settings, passes=(Pass.COMBINED, *_GUIDES), samples=samples)
-    with lowered(lambda: Session(session.scene, session.camera, settings)) as guides:
-        if not guides.render_all(samples, poll) or (poll is not None and poll()):
-            raise Cancelled
-        return [guides.read(source) for source in _GUIDES]
+def error_of(session):
+    """Return (error, upper end of its interval) of a session's picture after fast denoising; None if it cannot be known."""
+    try:
+        combined = denoiser.denoise(**{**inputs(session), "plan": FASTEST}).combined
+    except LancerError:
+        return None
+    return (combined.error, combined.high) if combined is not None else None
 
 
 def statistics(denoised):
     """Return the entries of last_statistics. denoised: the Denoised from apply, or None."""
     if denoised is None:
-        return {"denoised": "", "denoiser": "", "denoising_seconds": 0.0, "denoising_bytes": 0}
-    return {
-        "denoised": DECLARATION,
-        "denoiser": f"Open Image Denoise {denoised.version}",
-        "denoising_seconds": denoised.seconds,
-        "denoising_bytes": denoised.memory_bytes,
-    }
+        told = {"denoised": "", "denoiser": "", "denoising_seconds": 0.0, "denoising_bytes": 0}
+    else:
+        told = {
+            "denoised": DECLARATION,
+            "denoiser": f"Open Image Denoise {denoised.version}",
+            "denoising_seconds": denoised.seconds,
+            "denoising_bytes": denoised.memory_bytes,
+        }
+    combined = denoised.combined if denoised is not None else None
+    # One sample tells no error.
+    values = (combined.error, combined.low, combined.high, combined.moved) if combined else (math.inf,) * 3 + (0.0,)
+    names = ("denoised_error", "denoised_error_low", "denoised_error_high", "denoised_moved")
+    return {**told, **dict(zip(names, values, strict=True))}

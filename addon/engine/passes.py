@@ -13,7 +13,7 @@ class RenderPass(NamedTuple):
     name: str  # Blender's name, by which compositors and files refer to the pass
     channels: str
     kind: str  # VALUE, VECTOR or COLOR
-    source: Pass
+    source: Pass | None  # None: the engine fills it after denoising
 
 
 # Name of the view layer's switch use_pass_*, name of the pass from Blender 5 on and before, channels, kind, source.
@@ -38,6 +38,7 @@ _TABLE = (
     ("environment", "Environment", "Env", "RGB", "COLOR", Pass.ENVIRONMENT),
     ("ambient_occlusion", "Ambient Occlusion", "AO", "RGB", "COLOR", Pass.AMBIENT_OCCLUSION),
 )
+_DENOISED_ERROR = "Lancer Denoised Error"
 _NAME = 1 if bpy.app.version >= (5, 0) else 2
 
 
@@ -59,6 +60,13 @@ def render_passes(scene, view_layer):
         yield RenderPass("Denoising Depth", "Z", "VALUE", Pass.DENOISING_DEPTH)
     if scene.lancer.use_pass_error:
         yield RenderPass("Lancer Error", "X", "VALUE", Pass.ERROR)
+        if denoise.wanted(scene, view_layer):
+            yield RenderPass(_DENOISED_ERROR, "X", "VALUE", None)
+
+
+def sources(wanted):
+    """Return the core's passes of RenderPasses."""
+    return tuple(item.source for item in wanted if item.source is not None)
 
 
 def register_passes(engine, scene, view_layer):
@@ -75,11 +83,13 @@ def fill(layer, read, wanted):
             _upload(target, np.ascontiguousarray(read(source), np.float32))
 
 
-def replace_combined(layer, image):
-    """Replace Combined, of all views with stereoscopy, by another image, (height, width, 4) float32."""
+def show_denoised(layer, denoised):
+    """Replace Combined, of all views with stereoscopy, by the image of a Denoised, and fill the pass of its error."""
     for target in layer.passes:
         if target.name == "Combined":
-            _upload(target, image)
+            _upload(target, denoised.image)
+        elif target.name == _DENOISED_ERROR and denoised.combined is not None:
+            _upload(target, np.ascontiguousarray(denoised.combined.bars[..., None]))
 
 
 def _upload(target, image):

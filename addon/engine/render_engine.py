@@ -24,6 +24,7 @@ from ..messages.messages import Messages
 from ..messages.severity import Severity
 from ..viewport.viewport import Viewport
 from . import passes, preview, render_export, render_job
+from .denoising import Denoising, wishes
 from .picture import Picture
 from .quick_check import quick_check
 from .results import keep_costs, last_costs, last_messages, last_missing, last_statistics
@@ -87,7 +88,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             if self._snapshot is not None:
                 scene, view_layer = depsgraph.scene, depsgraph.view_layer_eval
                 layer, wanted = view_layer.name, tuple(passes.render_passes(scene, view_layer))
-                denoising = denoise.ready(scene, view_layer)
+                denoising = wishes(scene, view_layer)
                 # The snapshot is complete, and Blender's evaluated data can be larger than the render: free it. The depsgraph
                 # is invalid from here on.
                 self.free_blender_memory()
@@ -177,11 +178,14 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         if denoise.wanted(scene, view_layer) and denoise.missing():
             # Report it before the render takes its time.
             self._tell(scene, Messages([denoise.missing()]))
-        wanted = passes.render_passes(scene, view_layer)
-        options = ExportOptions(self.camera_override, tuple(item.source for item in wanted), _kept.get(scene))
+        wanted = tuple(passes.render_passes(scene, view_layer))
+        options = ExportOptions(self.camera_override, passes.sources(wanted), _kept.get(scene))
         self._snapshot, messages = export_scene(depsgraph, options, self._is_over)
         settings = self._snapshot.settings
-        self._snapshot.set("settings", dataclasses.replace(settings, time_limit=self._picture.limit(settings.time_limit)))
+        settings = dataclasses.replace(settings, time_limit=self._picture.limit(settings.time_limit))
+        if denoise.ready(scene, view_layer):
+            settings = denoise.prepared(settings, passes.sources(wanted))
+        self._snapshot.set("settings", settings)
         self._uses = [dataclasses.asdict(feature) for feature in used_features(self._snapshot)]
         self._tell(scene, messages)
         self._tell(scene, quick_check(scene, self._snapshot, self._is_over))
@@ -203,27 +207,23 @@ class LancerRenderEngine(bpy.types.RenderEngine):
                 passes.fill(result.layers[0], session.read, wanted)
                 self.update_result(result)
 
-            schedule = Schedule(session, self._picture.started)
+            denoiser = denoising and Denoising(session, denoising, self._is_over, lambda text: self.update_stats("", text))
+            schedule = Schedule(session, self._picture.started, denoiser.bound if denoiser and denoising.of_target else None)
             try:
                 self._run(schedule, show)
                 passes.fill(result.layers[0], session.read, wanted)
                 denoised = None
-                if denoising and not self._is_over():
+                if denoiser and not self._is_over():
                     self.update_result(result)
-                    denoised = self._denoise(scene, session)
+                    denoised = denoiser.result()
+                    if denoiser.failure:
+                        self._tell(scene, Messages([denoiser.failure]))
                 if denoised is not None:
-                    passes.replace_combined(result.layers[0], denoised.image)
+                    passes.show_denoised(result.layers[0], denoised)
                 self._account(scene, layer, session, schedule, denoised)
             finally:
                 # Keep the unfinished picture, after Esc too.
                 self.end_result(result)
-
-    def _denoise(self, scene, session):
-        """Return the Denoised; None if denoising failed or was cancelled, so that the noisy picture stays."""
-        denoised, failure = denoise.apply(session, self._is_over, lambda text: self.update_stats("", text))
-        if failure:
-            self._tell(scene, Messages([failure]))
-        return denoised
 
     def _run(self, schedule, show):
         """Render range by range and show the picture at intervals, until the schedule ends or the user cancels."""

@@ -1,8 +1,9 @@
 """Messages about Cycles' settings of a scene that change its light and that Lancer does not follow.
 
 One message reports all limits of Cycles' light paths that differ from Lancer's, another the pixel filter. Limits differ by
-default: the message is a hint while all of Cycles' settings in it are Blender's defaults. Each other setting is reported if it
-differs from its default. Settings that change only noise and time are not read; cycles_properties.py lists all settings.
+default: the message is a hint while all of Cycles' settings in it are Blender's defaults, and left out while Lancer's are, too.
+Each other setting is reported if it differs from its default. Settings that change only noise and time are not read;
+cycles_properties.py lists all settings.
 """
 
 from ..messages.severity import Severity
@@ -52,9 +53,11 @@ def _light_paths(own, cycles):
         ours.append(f"Transparent {own.transparent_bounces}")
     if own.clamp_indirect > 0.0:
         ours.append(f"Clamp Indirect {own.clamp_indirect:g}")
-    if theirs:
+    changed = any(_changed(cycles, name) for name, _ in theirs)
+    # Nobody asked for the limits of a new scene.
+    if theirs and (changed or any(_changed(own, name) for name in ("max_bounces", "transparent_bounces", "clamp_indirect"))):
         told = _listed([words for _, words in theirs])
-        severity = Severity.DIFFERENT if any(_changed(cycles, name) for name, _ in theirs) else Severity.HINT
+        severity = Severity.DIFFERENT if changed else Severity.HINT
         yield f"Cycles limits light by {told}, Lancer by {_listed(ours)}: set both alike for a comparison", severity
 
 

@@ -11,12 +11,11 @@ import math
 from dataclasses import dataclass
 
 from .schedule import FIRST_LOOK, SAMPLES, TARGET, TIME
-from .trial_renders import Point
+from .trial_renders import SLOPE, Point
 
-# Prior of the exponent p of error ~ samples^-p: 1/2 for independent samples, up to 3/4 at edges and 1 in smooth places for
-# low-discrepancy samples, less if further samples keep finding brighter fireflies.
-_SLOPE, _SLOPE_SPREAD = 0.55, 0.12
-_SLOWEST, _FASTEST = 0.35, 1.0
+# Standard deviation of the exponent p of error ~ samples^-p, and its limits as multiples of the expected one.
+_SLOPE_SPREAD = 0.12
+_SLOWEST, _FASTEST = 0.64, 1.82
 _FITTED = 4  # number of last points in the fit, which resemble the following samples most
 # Least relative uncertainty of a rate: processor clocks and other work vary from minute to minute.
 _LEAST_SPREAD = 0.03
@@ -74,7 +73,7 @@ class _Curve:
         self.measured, self.pixels, self.refines = measured, pixels, refines
         self.size, self.size_spread = _size_factor(measured, pixels)
         self.points = measured.refined if refines else _even_points(measured)
-        self.slope, self.slope_spread = slope(self.points)
+        self.slope, self.slope_spread = slope(self.points, measured.slope)
         # The width of an error's interval falls with the square root of the number of pixels.
         self.narrowing = math.sqrt(min(1.0, measured.pixels / pixels))
 
@@ -143,7 +142,7 @@ class _Curve:
         return rates[-1], math.hypot(spread, math.log(alike[-1] / other[min(len(alike), len(other)) - 1]), _LEAST_SPREAD)
 
 
-def slope(points):
+def slope(points, expected=SLOPE):
     """Return (p, its standard deviation) of error = constant * samples^-p, a weighted fit to the last points.
 
     The points share samples and are correlated; the deviation assumes independence, which is conservative. The exponent may
@@ -151,14 +150,15 @@ def slope(points):
     """
     known = [p for p in points[-_FITTED:] if p.error > 0.0]
     if len(known) < 2 or known[-1].samples == known[0].samples:
-        return _SLOPE, _SLOPE_SPREAD
+        return expected, _SLOPE_SPREAD
     p, deviation = _line(known)
     if len(known) >= 4:
         half = len(known) // 2
         deviation = math.hypot(deviation, 0.5 * (_line(known[: half + 1])[0] - _line(known[half - 1 :])[0]))
     # Combine the fit with the prior, each weighted by its inverse variance.
     own, other = 1.0 / max(deviation, 1e-3) ** 2, 1.0 / _SLOPE_SPREAD**2
-    return min(max((own * p + other * _SLOPE) / (own + other), _SLOWEST), _FASTEST), (own + other) ** -0.5
+    p = (own * p + other * expected) / (own + other)
+    return min(max(p, _SLOWEST * expected), _FASTEST * expected), (own + other) ** -0.5
 
 
 def _line(points):

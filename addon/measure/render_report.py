@@ -46,6 +46,10 @@ def account(session, schedule):
     numbers["rays_per_second"] = statistics.rays_per_second
     numbers["version"] = session.library.lancer_version().decode()
     numbers["ended_by"] = schedule.reason or CANCELLED
+    numbers["target_of_denoised"] = schedule.of_denoised
+    # As long as nothing is denoised.
+    numbers |= {"denoised": "", "denoised_moved": 0.0}
+    numbers |= {f"denoised_error{end}": math.inf for end in ("", "_low", "_high")}
     numbers["error"] = error.error
     for name in ("low", "high", "cannot_exclude", "clipped", "missing"):
         numbers[f"error_{name}"] = getattr(error, name)
@@ -68,14 +72,16 @@ def lines(numbers, settings, layer=""):
 
 def missed(numbers, settings):
     """Yield a sentence if the target error was not reached, with the settings that are expected to reach it."""
-    target, bound = settings.target_error, numbers["error_high"] + numbers["error_cannot_exclude"]
+    target, of_denoised = settings.target_error, numbers["target_of_denoised"] and numbers["denoised"]
+    name = "denoised_error" if of_denoised else "error"
+    bound = numbers[f"{name}_high"] + numbers["error_cannot_exclude"]
     if target <= 0.0 or bound <= target or numbers["ended_by"] in (TARGET, CANCELLED):
         return
     if not math.isfinite(bound):
         yield f"{percent(target)} was not reached: the error is unknown until each pixel has two samples"
         return
-    # The error falls with the square root of the number of samples.
-    more = (bound / target) ** 2
+    # The error falls with the square root of the number of samples, that of a denoised picture with about the third root.
+    more = (bound / target) ** (3 if of_denoised else 2)
     helps = []
     samples = numbers["samples_most"] * more
     if numbers["ended_by"] == SAMPLES or samples > settings.samples:
@@ -84,7 +90,7 @@ def missed(numbers, settings):
         seconds = settings.time_limit + numbers["seconds"] * (more - 1.0)
         if numbers["ended_by"] == TIME:
             helps.append(f"a Time Limit of about {duration(seconds)}")
-    error, most = percent(numbers["error"]), percent(bound)
+    error, most = percent(numbers[name]), percent(bound)
     yield f"{percent(target)} was not reached: {error}, at most {most}; it would take {' and '.join(helps)}"
 
 
@@ -102,12 +108,19 @@ def _accuracy(numbers, settings):
     if lights > 1 or paths > 1:
         samples += f", each of {lights} light{'s' * (lights > 1)} and {paths} path{'s' * (paths > 1)},"
     ended = f"{samples} in {numbers['seconds']:.1f} s, {how}"
-    if math.isfinite(numbers["error"]):
-        low, high = percent(numbers["error_low"]), percent(numbers["error_high"])
-        text = f"error {percent(numbers['error'])}, with 95 % confidence between {low} and {high}; {ended}"
+    if not math.isfinite(numbers["error"]):
+        told = [f"error unknown until each pixel has two samples; {ended}"]
+    elif math.isfinite(numbers["denoised_error"]):
+        told = [f"denoised error {_confident(numbers, 'denoised_error')}; {ended}"]
+        told.append(f"before denoising: error {_confident(numbers, 'error')}")
     else:
-        text = f"error unknown until each pixel has two samples; {ended}"
-    return [text, *biases(numbers, settings)]
+        told = [f"error {_confident(numbers, 'error')}; {ended}"]
+    return [*told, *biases(numbers, settings)]
+
+
+def _confident(numbers, name):
+    low, high = percent(numbers[f"{name}_low"]), percent(numbers[f"{name}_high"])
+    return f"{percent(numbers[name])}, with 95 % confidence between {low} and {high}"
 
 
 def biases(numbers, settings):
@@ -125,6 +138,9 @@ def biases(numbers, settings):
             yield f"light beyond {settings.max_bounces} bounces is left out: about {percent(missing)}"
     if numbers["denoised"]:
         yield numbers["denoised"]
+        if numbers["denoised_moved"] > _NOTHING:
+            moved = percent(numbers["denoised_moved"])
+            yield f"denoising alone would move about {moved} of the light; the samples bring it back as they rise"
 
 
 def fields(numbers, settings):
@@ -145,6 +161,8 @@ def fields(numbers, settings):
     yield "kernel", f"{numbers['kernel']}, {numbers['instruction_set']}"
     if numbers["denoised"]:
         yield "denoising", numbers["denoised"]
+        for name in ("denoised_error", "denoised_error_low", "denoised_error_high", "denoised_moved"):
+            yield name, f"{numbers[name]:.6g}"
     yield "version", numbers["version"]
 
 

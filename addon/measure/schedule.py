@@ -18,6 +18,9 @@ FIRST_LOOK = 16
 # Total probability of ending a render above its target; the first check gets one half of it, the second a quarter, and so on.
 _MISTAKE = 0.05
 
+# The error of a denoised picture falls with about the third root of the samples.
+_DENOISED_SLOPE = 3.0
+
 SAMPLES, TARGET, TIME, CANCELLED = "samples", "target error", "time limit", "cancelled"
 
 
@@ -27,9 +30,10 @@ class Schedule:
     started: the start of the time limit, by time.monotonic().
     Without target and time limit all pixels get equal samples. With either, each range doubles the samples of all pixels, and
     from FIRST_LOOK on only those of the pixels that reduce the error most (Session.refine).
+    denoised(): returns the upper end of the denoised picture's error, or None if unknown; the target is then of that picture.
     """
 
-    def __init__(self, session, started=None):
+    def __init__(self, session, started=None, denoised=None):
         self.session = session
         self.settings = session.settings
         self.reason = None  # why the render ended
@@ -45,6 +49,8 @@ class Schedule:
         self._range = (0.0, 0)  # start time of the range, pixel samples before it
         self._seconds_per_sample = 0.0
         self._progress = None
+        self._denoised = denoised
+        self._bound = None  # the last error that was compared with the target
         self.pixels = session.camera.region_width * session.camera.region_height
 
     def start(self):
@@ -126,6 +132,8 @@ class Schedule:
         """Return the pixel samples still needed for the target: as planned by refine, or by error ~ samples^-1/2."""
         if self._refining and self.error.planned_samples > 0.0:
             return max(0.0, self.error.planned_samples - (progress.samples - self._range[1]))
+        if self.of_denoised and self._bound is not None:
+            return progress.samples * max(0.0, (self._bound / target) ** _DENOISED_SLOPE - 1.0)
         return progress.samples * max(0.0, (self.error.bound / target) ** 2 - 1.0)
 
     def _ended(self):
@@ -142,13 +150,29 @@ class Schedule:
                 self.confidence = 1.0 - 2.0 * _MISTAKE / 2.0 ** (self._looks + 1)
                 self._looks += 1
                 self.error = self.session.error(self.confidence)
-                if self.error.bound <= target:
+                self._bound = self._compared()
+                if self._bound <= target:
                     return TARGET
         return None
 
+    @property
+    def of_denoised(self):
+        """Whether the target is that of the denoised picture."""
+        return self._denoised is not None
+
+    def _compared(self):
+        """Return the bound on the error that the target is about."""
+        high = self._denoised() if self.of_denoised else None
+        # Denoising invents no light that no sample has met.
+        return self.error.bound if high is None else min(self.error.bound, high + self.error.cannot_exclude)
+
+    def _ratio(self):
+        """Return the target of the picture before denoising, as a multiple of the target."""
+        return self.error.bound / self._bound if self._bound and self.error.known else 1.0
+
     def _refine(self):
         """Start a round of refinement; return False if no pixel can be doubled: all then have the largest power of two."""
-        if self.session.refine(self.settings.target_error, self.confidence):
+        if self.session.refine(self.settings.target_error * self._ratio(), self.confidence):
             return True
         self.samples = self.session.error().most_samples
         return False

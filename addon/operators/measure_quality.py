@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import bpy
 
+from ..denoise import view_layer as denoise
 from ..host.by_scene import ByScene
 from ..measure import render_report
 from ..measure.forecast import classic_seconds, forecast
@@ -49,10 +50,17 @@ def _pixels(scene):
 
 def forecasts(scene):
     """Yield (name, Forecast) of each preset and of the current settings."""
-    kept, own, pixels = measured[scene], scene.lancer, _pixels(scene)
+    own, pixels, points = scene.lancer, _pixels(scene), _points(scene)
     for name, (error, samples) in QUALITIES.items():
-        yield name.capitalize(), forecast(kept.points, pixels, error, samples)
-    yield "As set", forecast(kept.points, pixels, own.target_error, own.samples, own.time_limit)
+        yield name.capitalize(), forecast(points, pixels, error, samples)
+    yield "As set", forecast(points, pixels, own.target_error, own.samples, own.time_limit)
+
+
+def _points(scene):
+    """Return the Measured of the picture that the target error is about."""
+    points, own = measured[scene].points, scene.lancer
+    denoised = points.of_denoised() if own.use_denoising and own.use_denoised_target else None
+    return denoised or points
 
 
 def lines(scene):
@@ -98,7 +106,9 @@ class LANCER_OT_measure_quality(measuring.Measuring, bpy.types.Operator):
     )
 
     def work(self):
-        return functools.partial(measure, seconds=self.seconds)
+        context = bpy.context
+        denoised = denoise if denoise.ready(context.scene, context.view_layer) else None
+        return functools.partial(measure, seconds=self.seconds, denoised=denoised)
 
     def begun(self, context, snapshot):
         camera = snapshot.camera

@@ -32,7 +32,7 @@ class LancerPreferences(bpy.types.AddonPreferences):
         name="Quality of New Files",
         description="Quality of new files; saved files keep their own",
         items=(
-            ("CUSTOM", "Default", "256 samples, without a target error", 3),
+            ("CUSTOM", "Default", "That of a new scene: Good", 3),
             *(
                 (name, name.capitalize(), f"An error of {error * 100:g} %", number)
                 for number, (name, (error, _)) in enumerate(QUALITIES.items())

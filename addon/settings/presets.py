@@ -6,7 +6,8 @@ from bl_ui.utils import PresetPanel
 
 from ..host.registering import add_all
 
-_SAMPLING = ("target_error", "samples", "quality", "time_limit", "use_denoising")
+_DENOISING = ("use_denoising", "use_denoising_samples", "use_denoised_target")
+_SAMPLING = ("target_error", "samples", "quality", "time_limit", *_DENOISING)
 _LIGHT_PATHS = (
     "max_bounces",
     "transparent_bounces",

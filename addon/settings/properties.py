@@ -7,7 +7,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, PointerProperty
 
 from ..host.registering import add_all
-from .scene_settings import LancerSceneSettings, add_watched, remove_watched
+from .scene_settings import LancerSceneSettings, add_handlers, add_watched, remove_handlers, remove_watched
 
 
 def _color(name, description, default):
@@ -188,6 +188,7 @@ def _add(item):
     bpy.utils.register_class(group)
     if group is LancerSceneSettings:
         add_watched(group)
+        add_handlers()
     owner.lancer = PointerProperty(type=group, name="Lancer")
 
 
@@ -195,5 +196,6 @@ def _remove(item):
     group, owner = item
     del owner.lancer
     if group is LancerSceneSettings:
+        remove_handlers()
         remove_watched(group)
     bpy.utils.unregister_class(group)

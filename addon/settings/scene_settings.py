@@ -4,9 +4,12 @@ Files store the numbers of enum items: never renumber or reuse them.
 """
 
 import bpy
+from bpy.app.handlers import persistent
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
 from ..bindings.structs import SETTINGS
+from ..denoise.view_layer import missing
+from ..host.main_thread import ENGINE
 
 _GIVEN = {name: given for name, (_, given) in SETTINGS.items()}
 
@@ -40,6 +43,11 @@ def _passes_changed(self, _context):
 
 
 class LancerSceneSettings(bpy.types.PropertyGroup):
+    defaults: IntProperty(
+        name="Defaults",
+        description="Which defaults the file was saved with; 0 = those of the first releases",
+        options={"HIDDEN"},
+    )
     time_limit: FloatProperty(
         name="Time Limit",
         description="End the render this many seconds after its start, once every pixel has a sample. Samples go to the "
@@ -71,6 +79,18 @@ class LancerSceneSettings(bpy.types.PropertyGroup):
         name="Viewport Denoising",
         description="Remove noise from 3D views in Rendered shading with Blender's Open Image Denoise",
         default=False,
+    )
+    use_denoising_samples: BoolProperty(
+        name="Keep Samples",
+        description="Combine the denoised picture with its samples where that lowers the estimated error, so that it converges "
+        "to the truth as samples rise. Off: the denoised picture alone",
+        default=True,
+    )
+    use_denoised_target: BoolProperty(
+        name="Target of Denoised Picture",
+        description="The target error is that of the denoised picture, which is checked each time the samples have doubled. "
+        "Off: that of the picture before denoising",
+        default=True,
     )
     seed: IntProperty(name="Seed", description="Number that selects the pattern of noise", min=0, default=0)
     use_animated_seed: BoolProperty(
@@ -169,6 +189,49 @@ class LancerSceneSettings(bpy.types.PropertyGroup):
     )
 
 
+# The defaults of files saved before a scene recorded which defaults it has.
+_FIRST_DEFAULTS = {"quality": "CUSTOM", "target_error": 0.0, "samples": 256, "use_denoising": False, "max_bounces": 10}
+
+
+def keep_first_defaults(scene):
+    """Give a scene of an old file the values that it was saved with. Files store no default, so a new one would change them."""
+    own = scene.lancer
+    if own.defaults or scene.render.engine != ENGINE or scene.library is not None:
+        return
+    kept = {name: getattr(own, name) if own.is_property_set(name) else value for name, value in _FIRST_DEFAULTS.items()}
+    # Custom first: it changes no number, and no number changes it.
+    for name in _FIRST_DEFAULTS:
+        setattr(own, name, kept[name] if name != "quality" else "CUSTOM")
+    own.quality = kept["quality"]
+    own.defaults = 1
+
+
+@persistent
+def _loaded(*_):
+    for scene in bpy.data.scenes:
+        keep_first_defaults(scene)
+
+
+@persistent
+def _saving(*_):
+    for scene in bpy.data.scenes:
+        if scene.library is None:
+            scene.lancer.defaults = 1
+
+
+_HANDLERS = (("load_post", _loaded), ("save_pre", _saving))
+
+
+def add_handlers():
+    for name, handler in _HANDLERS:
+        getattr(bpy.app.handlers, name).append(handler)
+
+
+def remove_handlers():
+    for name, handler in _HANDLERS:
+        getattr(bpy.app.handlers, name).remove(handler)
+
+
 _WATCHED = ("integrator", "use_denoising", "use_pass_error", "use_pass_albedo", "quality", "target_error", "samples")
 
 
@@ -193,13 +256,15 @@ def add_watched(scene):
     scene.use_denoising = BoolProperty(
         name="Denoising",
         description="Remove noise from the finished picture with Blender's Open Image Denoise, which can also remove details. "
-        "The pass Noisy Image keeps the picture before denoising; the reported error is that of this pass",
-        default=False,
+        "The pass Noisy Image keeps the picture before denoising; the error of both is reported",
+        # As Blender's for Cycles.
+        default=not missing(),
         update=_passes_changed,
     )
     scene.use_pass_error = BoolProperty(
         name="Lancer Error",
-        description="Standard error of each pixel's luminance: 95 % of the pixels are correct within 1.96 times this value",
+        description="Standard error of each pixel's luminance: 95 % of the pixels are correct within 1.96 times this value. "
+        "With Denoising, the pass Lancer Denoised Error is that of the denoised picture",
         default=False,
         update=_passes_changed,
     )
@@ -218,7 +283,7 @@ def add_watched(scene):
             ("FINAL", "Final", "An error of 1 %: hardly any visible noise", 2),
             ("CUSTOM", "Custom", "Your own target error and number of samples", 3),
         ),
-        default="CUSTOM",
+        default="GOOD",
         update=_quality_changed,
     )
     scene.target_error = FloatProperty(
@@ -230,7 +295,7 @@ def add_watched(scene):
         min=0.0,
         max=1.0,
         precision=4,
-        default=0.0,
+        default=QUALITIES["GOOD"][0],
         update=_numbers_changed,
     )
     scene.samples = IntProperty(
@@ -239,7 +304,7 @@ def add_watched(scene):
         min=1,
         soft_max=4096,
         max=1 << 24,
-        default=_GIVEN["samples"],
+        default=QUALITIES["GOOD"][1],
         update=_numbers_changed,
     )
 

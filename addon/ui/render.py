@@ -19,8 +19,8 @@ _REPLACED = (
 )
 
 _DENOISING = (
-    "Open Image Denoise is a guess and can remove details. The reported error is that of the picture before denoising, the "
-    "pass Noisy Image."
+    "Open Image Denoise is a guess and can remove details. Its own error is reported beside that of the picture before "
+    "denoising, the pass Noisy Image."
 )
 
 
@@ -111,6 +111,13 @@ class LANCER_RENDER_PT_denoising(LancerRenderPanel, bpy.types.Panel):
         if missing:
             sentence(column, context, missing, "ERROR")
         sentence(column, context, _DENOISING)
+        settings = context.scene.lancer
+        column = self._column()
+        column.active = settings.use_denoising and settings.integrator != "NORMALS" and not missing
+        column.prop(settings, "use_denoising_samples")
+        row = column.row()
+        row.active = settings.target_error > 0.0
+        row.prop(settings, "use_denoised_target")
 
 
 class LANCER_RENDER_PT_sampling_advanced(LancerRenderPanel, bpy.types.Panel):

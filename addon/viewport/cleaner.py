@@ -1,45 +1,57 @@
-"""Denoising in a background thread, which the caller polls."""
+"""Denoising in a background thread, while the session goes on; the caller polls."""
 
 import threading
 
 from ..bindings.enums import Pass
 from ..bindings.session import Cancelled
 from ..denoise import denoiser
+from ..denoise.plan import plan
 
 # Passes of the session that denoising needs besides Combined.
 GUIDES = (Pass.ALBEDO, Pass.DENOISING_NORMAL)
 
 
 class Cleaner:
-    """Denoises a session's current picture; leaving the with statement cancels the work."""
+    """Denoises the pictures of a session that it gets, one at a time. Leaving the with statement cancels the work."""
 
     def __init__(self, session):
-        self._arguments = [session.read(source) for source in (Pass.COMBINED, *GUIDES)]
-        self._threads = session.settings.threads
+        self._session = session
         self._given_up = threading.Event()
-        self._image = self._error = None
-        self._thread = threading.Thread(target=self._work, name="lancer viewport denoising", daemon=True)
+        self._thread = self._image = self._error = self._what = None
 
     def __enter__(self):
-        self._thread.start()
         return self
 
     def __exit__(self, *_):
         self._given_up.set()
 
     @property
-    def is_over(self):
-        return not self._thread.is_alive()
+    def is_busy(self):
+        """Whether a picture was given whose result was not taken yet."""
+        return self._thread is not None
 
-    def image(self):
-        """Return the denoised image after is_over; raise the error if denoising failed."""
+    def give(self, what, samples):
+        """Denoise the session's current picture, with that many samples; what: comes back with the result."""
+        color, *guides = [self._session.read(source) for source in (Pass.COMBINED, *GUIDES)]
+        arguments = color, guides, plan(color.shape[0] * color.shape[1], samples)
+        self._what = what
+        self._thread = threading.Thread(target=self._work, args=arguments, name="lancer viewport denoising", daemon=True)
+        self._thread.start()
+
+    def take(self):
+        """Return (what, image) of the given picture, or None while it is not denoised; raise the error of a failure."""
+        if self._thread is None or self._thread.is_alive():
+            return None
+        self._thread = None
         if self._error is not None:
-            raise self._error
-        return self._image
+            error, self._error = self._error, None
+            raise error
+        return self._what, self._image
 
-    def _work(self):
+    def _work(self, color, guides, how):
+        threads = self._session.settings.threads
         try:
-            self._image = denoiser.denoise(*self._arguments, threads=self._threads, poll=self._given_up.is_set).image
+            self._image = denoiser.denoise(color, *guides, plan=how, threads=threads, poll=self._given_up.is_set).image
         except Cancelled:
             pass
         except Exception as error:

@@ -27,9 +27,10 @@ from .sizes import PixelSizes
 _BRIEF = 0.25
 # Seconds of copying a scene into the library before Blender gets control again.
 _PIECE = 0.02
-# While a picture refines: least seconds between updates, and the share of the time for showing and for denoising.
+# While a picture refines: least seconds between updates, and the share of the time for showing.
 _SHOW_EVERY, _SHOW_SHARE = 0.15, 0.1
-_DENOISE_EVERY, _DENOISE_SHARE = 0.3, 0.5
+# Pictures, shown or not, from one that is denoised to the next: most of the time is for samples.
+_DENOISE_EACH = 2
 
 
 class Wanted(NamedTuple):
@@ -176,15 +177,17 @@ class Painter:
         """Render the view with pixels of that size."""
         denoising = wanted.denoising and size == wanted.finest
         passes = (Pass.COMBINED, *GUIDES) if denoising else (Pass.COMBINED,)
-        settings = dataclasses.replace(wanted.settings, samples=samples, passes=passes)
+        blended = wanted.settings.blended_features or denoising
+        settings = dataclasses.replace(wanted.settings, samples=samples, passes=passes, blended_features=blended)
         camera = wanted.view.coarser(size)
-        with priority.lowered(lambda: Session(self._scene, camera, settings)) as session:
+        with priority.lowered(lambda: Session(self._scene, camera, settings)) as session, Cleaner(session) as cleaner:
             schedule = Schedule(session)
             schedule.longest = _SHOW_EVERY
-            shown = TimeShare(_DENOISE_SHARE, _DENOISE_EVERY) if denoising else TimeShare(_SHOW_SHARE, _SHOW_EVERY)
-            looked = 1
+            shown = TimeShare(_SHOW_SHARE, _SHOW_EVERY)
+            looked, pictures, clean = 1, 0, False
             while schedule.start():
                 while not (progress := schedule.wait(0.0)).finished:
+                    clean = self._take(cleaner) or clean
                     yield
                 if schedule.samples == 1:
                     # progress.seconds excludes the constant cost of each picture.
@@ -195,23 +198,35 @@ class Painter:
                     schedule.look()
                 if shown.due or schedule.over:
                     with shown.spending():
-                        clean = (yield from self._clean(session)) if denoising else None
-                        image = session.read() if clean is None else clean
-                    self.picture = ViewPicture(image, wanted, size, schedule.samples, schedule.error, clean is not None)
+                        about = ViewPicture(None, wanted, size, schedule.samples, schedule.error, False)
+                        # A noisy picture would flicker between denoised ones.
+                        if not clean:
+                            self.picture = about._replace(image=session.read())
+                    while denoising and schedule.over and cleaner.is_busy:
+                        clean = self._take(cleaner) or clean
+                        yield
+                    if denoising and not cleaner.is_busy and (pictures % _DENOISE_EACH == 0 or schedule.over):
+                        cleaner.give(about, schedule.samples)
+                        pictures = 0
+                    pictures += 1
                     schedule.longest = max(_SHOW_EVERY, shown.interval)
                     self._brief = False
                 while self.waits:
                     yield
+            while cleaner.is_busy:
+                self._take(cleaner)
+                yield
 
-    def _clean(self, session):
-        """Return the denoised picture; None, with a message, if denoising fails."""
+    def _take(self, cleaner):
+        """Show the denoised picture if it is ready, and return whether it is; add a message if denoising failed."""
         try:
-            with Cleaner(session) as cleaner:
-                while not cleaner.is_over:
-                    yield
-                return cleaner.image()
+            taken = cleaner.take()
         except (LancerError, MemoryError) as error:
             line = f"{error or 'there is not enough memory for denoising'}; {denoise.AS_IT_IS}"
             if line not in self.messages:
                 self.messages = (*self.messages, line)
-        return None
+            return False
+        if taken is not None:
+            about, image = taken
+            self.picture = about._replace(image=image, denoised=True)
+        return taken is not None

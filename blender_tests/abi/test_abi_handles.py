@@ -68,6 +68,7 @@ def calls_on_sessions(raw):
 def test_every_call_with_a_handle_is_tried_here(raw):
     known = {
         "lancer_scene_create",
+        "lancer_combine_denoised",
         "lancer_probe_microfacet",
         "lancer_probe_sampler",
         "lancer_probe_filter",

@@ -101,7 +101,7 @@ def test_blender_saves_what_a_maintainer_needs(which, tmp_path):
     assert set(facts["versions"]) >= {"Lancer", "library", "Blender", "system", "processor", "numpy"}
     assert facts["versions"]["Blender"].startswith(got["version"])
     assert facts["settings"]["lancer"]["samples"] == 16 and facts["settings"]["render"]["resolution_x"] == 48
-    assert facts["settings"]["cycles"]["max_bounces"] == 10
+    assert facts["settings"]["cycles"]["max_bounces"] == 12
     # The settings contain no path of the user.
     assert "secret" not in json.dumps(facts["settings"])
     told = [(message["text"], message["severity"]) for message in facts["messages"]]

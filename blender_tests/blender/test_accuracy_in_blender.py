@@ -27,7 +27,7 @@ def test_the_error_is_told(case):
     for name in ("error", "error_low", "error_high", "error_cannot_exclude"):
         assert float(stamped[name]) == pytest.approx(numbers[name], rel=1e-5)
     assert stamped["samples"] == "64" and stamped["seed"] == "0" and stamped["ended_by"] == "samples"
-    assert "max_bounces 10" in stamped["settings"] and "lambert" in stamped["features"] and stamped["version"]
+    assert "max_bounces 12" in stamped["settings"] and "lambert" in stamped["features"] and stamped["version"]
     assert float(stamped["seconds"]) == pytest.approx(numbers["seconds"], abs=1e-3)
     assert got["layers"] == ["ViewLayer"]
     # The pass averages the same variances over other windows: its figure is the same within 1.5 times the interval.

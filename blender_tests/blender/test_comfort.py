@@ -48,7 +48,7 @@ def test_every_setting_has_a_page_of_the_manual(case):
 
 def test_a_script_needs_no_preferences(case):
     got = case("without_preferences")
-    assert (got["threads"], got["quality"], got["found"]) == (0, False, False)
+    assert (got["threads"], got["quality"], got["found"]) == (0, "CUSTOM", False)
 
 
 @pytest.fixture
@@ -101,14 +101,14 @@ def own():
 result.append(own())
 bpy.ops.wm.save_as_mainfile(filepath=path)
 preferences = bpy.context.preferences.addons["lancer"].preferences
-preferences.threads, preferences.quality = 3, "GOOD"
+preferences.threads, preferences.quality = 3, "FINAL"
 result.append([threads("AUTO"), threads("FIXED")])
 bpy.ops.wm.read_homefile()
 result.append(own())
 bpy.ops.wm.open_mainfile(filepath=path)
 result.append(own())
 """)
-    assert got == [["CUSTOM", 256], [3, 5], ["GOOD", 8192], ["CUSTOM", 256]]
+    assert got == [["GOOD", 8192], [3, 5], ["FINAL", 65536], ["GOOD", 8192]]
 
 
 def test_preferences_outlast_the_session(installed, which):
@@ -119,8 +119,8 @@ if own is None:
     bpy.ops.preferences.addon_enable(module="lancer")
 preferences = bpy.context.preferences.addons["lancer"].preferences
 result += [own is not None and own.quality, preferences.threads]
-preferences.threads, preferences.quality = 3, "GOOD"
+preferences.threads, preferences.quality = 3, "FINAL"
 bpy.ops.wm.save_userpref()
 """
     assert installed(session) == [False, 0]
-    assert installed(session) == (["GOOD", 3] if which == PROGRAM else [False, 0])
+    assert installed(session) == (["FINAL", 3] if which == PROGRAM else [False, 0])

@@ -77,7 +77,7 @@ def test_settings_are_taken_over_and_the_button_goes(found):
 
 
 def test_taking_over_can_be_undone(found):
-    assert found["undo"] == [256, 77, 256]
+    assert found["undo"] == [8192, 77, 8192]
 
 
 def test_without_the_cycles_addon_there_is_nothing_to_take_over(found):

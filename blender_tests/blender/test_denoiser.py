@@ -12,10 +12,14 @@ import pytest
 from addon.bindings import abi
 from addon.bindings.abi import LancerError
 from addon.bindings.session import Cancelled
-from addon.denoise import denoiser, oidn
+from addon.denoise import denoiser, oidn, plan
 from addon.denoise.loaded_libraries import on_linux
 
 HEIGHT, WIDTH = 96, 128
+
+
+def luminance(picture):
+    return picture[..., :3].astype(np.float64) @ (0.2126, 0.7152, 0.0722)
 
 
 @pytest.fixture(scope="module", params=[2, 1], ids=["version 2", "version 1"])
@@ -196,3 +200,46 @@ def test_a_wrong_library_is_told(tmp_path, library):
         cut.write_bytes(file.read(5000))
     with pytest.raises(LancerError, match="is cut short"):
         oidn.load(cut)
+
+
+def test_the_error_is_told_with_the_noise_of_the_samples(library, pictures):
+    truth, _, albedo, normal = pictures
+    # Sixteen samples in two halves.
+    samples = truth * np.random.default_rng(2).gamma(0.5, 2.0, (16, HEIGHT, WIDTH, 1)).astype(np.float32)
+    noisy, halves = samples.mean(axis=0), 0.5 * (samples[:8].mean(axis=0) - samples[8:].mean(axis=0))
+    nothing = np.zeros_like(albedo)
+    noise = denoiser.Noise(halves, nothing, nothing)
+    given = [array.copy() for array in (noisy, *noise)]
+    plain = denoiser.denoise(noisy, albedo, normal, library=library)
+    alone = denoiser.denoise(noisy, albedo, normal, noise, combines=False, library=library)
+    got = denoiser.denoise(noisy, albedo, normal, noise, library=library)
+    assert all(np.array_equal(array, before) for array, before in zip((noisy, *noise), given, strict=True))
+    assert plain.combined is None and got.combined.bars.shape == (HEIGHT, WIDTH)
+    for found in (alone, got):
+        level = luminance(truth) + 0.01 * luminance(truth).mean()
+        true = float(np.sqrt(np.mean(((luminance(found.image) - luminance(truth)) / level) ** 2)))
+        # The error of twelve thousand pixels, whose denoised values depend on each other over some tens: a few per cent of
+        # spread, and what the interval tells of the method.
+        assert 0.5 * found.combined.low < true < 2.0 * found.combined.high
+        assert error(found.image, truth) < 0.2 * error(noisy, truth)
+    assert error(alone.image, truth) < 1.3 * error(plain.image, truth)
+
+
+def test_noise_is_that_of_each_guide(library, pictures):
+    truth, noisy, albedo, normal = pictures
+    with pytest.raises(LancerError, match="noise of albedo of shape"):
+        denoiser.denoise(noisy, albedo, normal, denoiser.Noise(truth), library=library)
+    broken = truth.copy()
+    broken[3, 4, 1] = np.nan
+    with pytest.raises(LancerError, match="noise of color is not finite"):
+        denoiser.denoise(noisy, noise=denoiser.Noise(broken), library=library)
+
+
+def test_large_pictures_of_few_samples_get_a_fast_network():
+    small, large = 240 * 180, 1920 * 1080
+    assert plan.plan(small, 1) == plan.plan(large, 1024) == plan.PLANS[0]
+    chosen = [plan.plan(large, samples) for samples in (1, 16, 32, 64, 128)]
+    assert chosen == sorted(chosen, key=plan.PLANS.index, reverse=True) and chosen[0] == plan.FASTEST
+    # Denoising takes at most a tenth of the time of samples, where the fastest network does.
+    for samples in (16, 32, 64, 128):
+        assert plan.plan(large, samples).cost <= 0.1 * 1.25 * samples

@@ -106,7 +106,7 @@ def test_switches_are_seen_in_the_compositor_at_once(case):
         "nothing": set(),
         "use_pass_error": {error},
         "use_pass_albedo": {error, albedo},
-        "use_denoising": {error, albedo, noisy},
+        "use_denoising": {error, albedo, noisy, "Lancer Denoised Error"},
         "integrator": {error, albedo},
         "off": set(),
     }

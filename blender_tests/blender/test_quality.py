@@ -44,3 +44,16 @@ def test_a_forecast_ends_with_the_samples(which, tmp_path):
     lines = blenders.run(which, tmp_path, "quality_cases", "missed")
     (line,) = (line for line in lines if line.startswith("As set"))
     assert line.endswith("; 16 samples end it above its 0.01 %"), lines
+
+
+@pytest.mark.parametrize("which", [MODULE, PROGRAM])
+def test_a_new_scene_is_good_and_an_old_file_as_it_was(which, tmp_path):
+    got = blenders.run(which, tmp_path, "quality_cases", "defaults")
+    # Debian builds Blender without the denoiser.
+    denoises = which == MODULE
+    new = ["GOOD", pytest.approx(0.03), 8192, denoises, 12]
+    assert got["new"] == got["saved"] == got["other engine"] == new
+    assert got["old"] == ["CUSTOM", 0.0, 256, False, 10]
+    assert got["old and changed"] == ["FINAL", pytest.approx(0.01), 65536, True, 3]
+    # The default scene has no message, and ends by itself.
+    assert got["messages"] == [] and got["ended_by"] == "target error"

@@ -12,7 +12,8 @@ from addon.measure.schedule import CANCELLED, SAMPLES, TARGET, TIME
 def numbers(error, bound, ended_by=SAMPLES, samples=100, seconds=20.0, **more):
     values = {"error": error, "error_low": 0.8 * error, "error_high": 0.9 * bound, "error_cannot_exclude": 0.1 * bound}
     values |= {"error_clipped": 0.0, "error_missing": 0.0, "ended_by": ended_by, "seconds": seconds, "denoised": ""}
-    values |= {"split_lights": 1, "split_paths": 1}
+    values |= {"split_lights": 1, "split_paths": 1, "target_of_denoised": True, "denoised_moved": 0.0}
+    values |= {f"denoised_error{end}": math.inf for end in ("", "_low", "_high")}
     return values | {"samples": samples, "samples_most": samples, "samples_mean": float(samples)} | more
 
 
@@ -34,6 +35,19 @@ def test_a_target_that_was_missed_is_told_first_with_what_helps():
     # Two digits, rounded up: fewer would be too few.
     first, *_ = told(numbers(0.25, 0.333, samples=1000), samples=1000)
     assert first.endswith("about 12000 Samples")
+
+
+def test_a_target_of_the_denoised_picture_needs_more():
+    of_denoised = {"denoised": "a guess", "denoised_error": 0.15, "denoised_error_low": 0.1, "denoised_error_high": 0.15}
+    # The noisy error does not count. Half of the error requires eight times the samples.
+    first, second, third, *_ = told(numbers(0.5, 0.5, **of_denoised))
+    assert first == "10 % was not reached: 15 %, at most 20 %; it would take about 800 Samples"
+    assert second.startswith("denoised error 15 %, with 95 % confidence between 10 % and 15 %")
+    assert third == "before denoising: error 50 %, with 95 % confidence between 40 % and 45 %"
+    reached = of_denoised | {"denoised_error_high": 0.04}
+    assert told(numbers(0.5, 0.5, **reached))[0].startswith("denoised error ")
+    # The target may be that of the picture before denoising.
+    assert told(numbers(0.5, 0.5, **reached, target_of_denoised=False))[0].startswith("10 % was not reached: 50 %")
 
 
 @pytest.mark.parametrize(

@@ -815,7 +815,7 @@ typedef struct lancer_settings {
   uint32_t integrator;          /* [choice 0 2] LANCER_PATH ... */
   uint32_t samples;             /* [number 256] planned per pixel; CLASSIC with 1 uses the centre of pixel, lens and light */
   uint32_t seed;                /* [number 0] */
-  uint32_t max_bounces;         /* [number 10 1024] PATH: scattering events after the first; CLASSIC: recursion depth, at most
+  uint32_t max_bounces;         /* [number 12 1024] PATH: scattering events after the first; CLASSIC: recursion depth, at most
                                    LANCER_DEEPEST_RECURSION */
   float contribution_threshold; /* [amount 0] CLASSIC: a ray is traced only if its throughput exceeds this in some channel */
   float clamp_indirect;         /* [amount 0] PATH: largest channel of a sample's indirect light; 0 = off */

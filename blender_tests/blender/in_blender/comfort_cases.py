@@ -89,6 +89,6 @@ def without_preferences():
     preferences._start_new_file()
     return {
         "threads": export_told()[0].settings.threads,
-        "quality": scene.lancer.is_property_set("target_error"),
+        "quality": scene.lancer.quality,
         "found": preferences._found() is not None,
     }

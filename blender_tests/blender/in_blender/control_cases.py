@@ -10,7 +10,7 @@ import stage
 
 from addon.bindings.abi import LancerError
 from addon.denoise import view_layer as denoise
-from addon.engine.passes import render_passes
+from addon.engine.passes import render_passes, sources
 from addon.export.scene import ExportOptions, export_scene
 
 # Properties that select which data-block is shown, and properties that are the data itself.
@@ -22,7 +22,7 @@ def exported(scene, view_layer):
     """Return ((snapshot, passes), messages)."""
     view_layer.update()
     wanted = tuple(render_passes(scene, view_layer))
-    options = ExportOptions(passes=tuple(item.source for item in wanted))
+    options = ExportOptions(passes=sources(wanted))
     try:
         snapshot, messages = export_scene(bpy.context.evaluated_depsgraph_get(), options)
     except LancerError as error:

@@ -44,7 +44,7 @@ def _render(scene, denoising, layer=None):
 
 def _compare(scene, layer=None):
     """Render the scene without and with denoising. Return which passes are equal, and facts of the others."""
-    raw, _, before, data = _render(scene, False, layer)
+    raw, _, _, data = _render(scene, False, layer)
     pictures, messages, statistics, stamped = _render(scene, True, layer)
     combined = pictures["Combined"]
     declaration = denoise.DECLARATION.encode()
@@ -62,7 +62,6 @@ def _compare(scene, layer=None):
         "picture": hashlib.sha256(combined.tobytes()).hexdigest(),
         "messages": messages,
         "statistics": {name: value for name, value in statistics.items() if name.startswith("denois")},
-        "film alike": statistics["film_bytes"] == before["film_bytes"],
         "stamped": [declaration in data, declaration in stamped],
     }
 
@@ -114,12 +113,72 @@ def normals():
     return _compare(scene)
 
 
+_OF_PICTURES = (plain, classic, passes, border, transparent, view_layers, normals)
+
+
 def several():
     """Run many cases in one process."""
+    return {case.__name__: case() for case in (*_OF_PICTURES, failing, as_cycles, nearer, told, once, target)} | {
+        how: stopped(how) for how in ("poll", "at once")
+    }
+
+
+def _noisy(samples):
+    """Build the scene in the light of a large lamp."""
+    scene = _scene(96, 64, samples)
+    next(item.data for item in bpy.data.objects if item.type == "LIGHT").shadow_soft_size = 3.0
+    scene.lancer.use_pass_error = True
+    return scene
+
+
+def told():
+    """Return the error of a denoised picture as it is told, and its pass, with the samples in the picture and without."""
+    scene = _noisy(16)
+    found = []
+    for combines in (True, False):
+        scene.lancer.use_denoising_samples = combines
+        pictures, _, statistics, data = _render(scene, True)
+        bars = pictures["Lancer Denoised Error"]
+        found.append(
+            {
+                "picture": hashlib.sha256(pictures["Combined"].tobytes()).hexdigest(),
+                "errors": [statistics[f"denoised_error{end}"] for end in ("_low", "", "_high")],
+                "error": statistics["error"],
+                "lines": statistics["accuracy"],
+                "stamped": f"{statistics['denoised_error']:.6g}".encode() in data,
+                "bars": [list(bars.shape), float(bars.min()), float(bars.mean()), float(pictures["Lancer Error"].mean())],
+            }
+        )
+    return found
+
+
+def once():
+    """Denoise one sample, which has no halves."""
+    scene = _scene(samples=1)
+    scene.lancer.use_pass_error = True
+    pictures, _, statistics, _ = _render(scene, True)
     return {
-        case.__name__: case()
-        for case in (plain, classic, passes, border, transparent, view_layers, normals, failing, as_cycles, nearer)
-    } | {how: stopped(how) for how in ("poll", "at once")}
+        "denoised": not np.array_equal(pictures["Combined"], pictures["Noisy Image"]),
+        "error": statistics["denoised_error"],
+        "bars": float(np.abs(pictures["Lancer Denoised Error"]).max()),
+        "lines": statistics["accuracy"],
+    }
+
+
+def target():
+    """End at a target of the denoised picture, of the noisy one, and of one that denoising cannot reach."""
+    scene = _noisy(4096)
+    found = {}
+    for name, error, of_denoised, samples in (
+        ("denoised", 0.03, True, 4096),
+        ("noisy", 0.03, False, 4096),
+        ("missed", 0.0001, True, 32),
+    ):
+        scene.lancer.target_error, scene.lancer.use_denoised_target, scene.lancer.samples = error, of_denoised, samples
+        _, messages, statistics, _ = _render(scene, True)
+        names = ("ended_by", "samples_mean", "error", "denoised_error_high", "error_cannot_exclude", "denoising_seconds")
+        found[name] = {key: statistics[key] for key in names} | {"lines": statistics["accuracy"], "messages": messages}
+    return found
 
 
 def stopped(how):
@@ -128,14 +187,14 @@ def stopped(how):
     raw, *_ = _render(scene, False)
     original, said, result = denoise.apply, [], {}
 
-    def apply(session, _, tell):
+    def apply(session, combines, _, tell):
         def hear(text):
             said.append(text)
             tell(text)
             if how == "interrupt" and "%" in text:
                 os.kill(os.getpid(), signal.SIGINT)
 
-        return original(session, lambda: how == "poll" and "%" in said[-1] or how == "at once", hear)
+        return original(session, combines, lambda: how == "poll" and bool(said) or how == "at once", hear)
 
     denoise.apply = apply
     if how == "interrupt":

@@ -211,19 +211,20 @@ def stereo():
     seen = []
     from addon.engine import passes
 
-    replace = passes.replace_combined
+    show = passes.show_denoised
 
-    def watched(layer, image):
-        replace(layer, image)
+    def watched(layer, denoised):
+        image = denoised.image
+        show(layer, denoised)
         for target in layer.passes:
             if target.name == "Combined":
                 pixels = np.empty((len(target.rect), 4), np.float32)
                 target.rect.foreach_get(pixels.ravel() if bpy.app.version >= (4, 0) else pixels)
                 seen.append(float(np.abs(pixels - image.reshape(-1, 4)).max()))
 
-    passes.replace_combined = watched
+    passes.show_denoised = watched
     bpy.ops.render.render()
-    passes.replace_combined = replace
+    passes.show_denoised = show
     return {"differences": seen}
 
 

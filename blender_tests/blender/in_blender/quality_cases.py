@@ -33,7 +33,7 @@ def measured():
     scene.render.resolution_percentage = 100
     scene.lancer.max_bounces = 2
     old["other bounces"] = measure_quality.is_old(scene)
-    scene.lancer.max_bounces = 10
+    scene.lancer.max_bounces = 12
     old["bounces again"] = measure_quality.is_old(scene)
     scene.lancer.clamp_indirect = 10.0
     old["other clamp"] = measure_quality.is_old(scene)
@@ -74,3 +74,49 @@ def missed():
     scene.lancer.target_error = 1e-4
     bpy.ops.lancer.measure_quality(seconds=0.5)
     return list(measure_quality.lines(scene))
+
+
+_STARTED_WITH = ("quality", "target_error", "samples", "use_denoising", "max_bounces")
+
+
+def defaults():
+    """Return the settings of a new scene, and of files saved by the first releases and now, in each engine."""
+    import os
+    import tempfile
+
+    from addon.settings import scene_settings
+
+    def now():
+        own = bpy.context.scene.lancer
+        return [getattr(own, name) for name in _STARTED_WITH]
+
+    def reopened(engine, old, **changes):
+        bpy.ops.wm.read_factory_settings(use_empty=False)
+        scene = bpy.context.scene
+        scene.render.engine = engine
+        for name, value in changes.items():
+            setattr(scene.lancer, name, value)
+        path = os.path.join(tempfile.mkdtemp(), "file.blend")
+        if old:
+            # The first releases did not record their defaults.
+            bpy.app.handlers.save_pre.remove(scene_settings._saving)
+        bpy.ops.wm.save_as_mainfile(filepath=path)
+        if old:
+            bpy.app.handlers.save_pre.append(scene_settings._saving)
+        bpy.ops.wm.open_mainfile(filepath=path)
+        return now()
+
+    bpy.ops.wm.read_factory_settings(use_empty=False)
+    found = {"new": now(), "saved": reopened("LANCER", False), "other engine": reopened("CYCLES", True)}
+    found["old"] = reopened("LANCER", True)
+    found["old and changed"] = reopened("LANCER", True, quality="FINAL", max_bounces=3, use_denoising=True)
+    bpy.ops.wm.read_factory_settings(use_empty=False)
+    scene = bpy.context.scene
+    scene.render.engine = "LANCER"
+    scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 64, 36, 100
+    bpy.ops.render.render()
+    from addon.engine import render_engine as engine
+
+    found["messages"] = list(engine.last_messages[scene.name])
+    found["ended_by"] = engine.last_statistics[scene.name]["ended_by"]
+    return found

@@ -14,13 +14,13 @@ _SETTINGS = {
     "diffuse_bounces": (0, "Diffuse 0"),
     "glossy_bounces": (1, "Glossy 1"),
     "transmission_bounces": (2, "Transmission 2"),
-    "transparent_max_bounces": (3, "by Transparent 3, Lancer by Max Bounces 10 and Transparent 8"),
+    "transparent_max_bounces": (3, "by Transparent 3, Lancer by Max Bounces 12 and Transparent 8"),
     "pixel_filter_type": ("GAUSSIAN", "filter is Gaussian 1.5, Lancer's is Blackman-Harris 1.5"),
     "filter_width": (2.5, "filter is Blackman-Harris 2.5"),
 }
 # These change noise or time alone, are read by Lancer, or mean the same in Lancer.
 _NEUTRAL = {
-    "samples": 7, "seed": 5, "volume_bounces": 3, "diffuse_bounces": 64, "glossy_bounces": 10,
+    "samples": 7, "seed": 5, "volume_bounces": 3, "diffuse_bounces": 64, "glossy_bounces": 12,
     "use_adaptive_sampling": False, "light_sampling_threshold": 0.1,
     "min_light_bounces": 3, "use_camera_cull": True, "texture_limit_render": "128", "ao_bounces_render": 3,
 }  # fmt: skip
@@ -39,7 +39,7 @@ def _told_of_scene():
 _LIGHT_PATHS = {
     "start": ({}, {}),
     "few bounces here": ({}, {"max_bounces": 3}),
-    "same number": ({"max_bounces": 10}, {}),
+    "other number": ({"max_bounces": 10}, {}),
     "few bounces there": ({"max_bounces": 3}, {}),
     "few of light through glass": ({"transmission_bounces": 2}, {}),
     "same clamp": ({}, {"clamp_indirect": 10.0}),

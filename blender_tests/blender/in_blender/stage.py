@@ -20,7 +20,8 @@ def empty(width=32, height=32, samples=4, engine="LANCER"):
     scene.view_settings.view_transform = "Standard"
     if engine == "LANCER":
         scene.lancer.quality = "CUSTOM"
-        scene.lancer.samples = samples
+        scene.lancer.samples, scene.lancer.target_error = samples, 0.0
+        scene.lancer.use_denoising = False
         scene.lancer.pixel_filter = "BOX"
         light_paths_alike(scene)
     return scene

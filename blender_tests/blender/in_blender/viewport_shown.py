@@ -206,6 +206,8 @@ def cleans(folder):
 
     def look():
         done = yield from until(lambda: shown() is not None and shown()._wanted is not wanted and finished())
+        # The last picture is denoised after it is shown.
+        yield from until(lambda: not shown().painter.is_busy)
         yield 0.2
         picture = shown().painter.picture
         differs = float(np.abs(np.diff(picture.image[..., :3], axis=1)).mean())

@@ -31,6 +31,8 @@ def make_alike(scene, threads, bounces=12):
     render.threads_mode = "FIXED"
     render.threads = threads
     render.use_compositing = render.use_sequencer = False
+    scene.lancer.quality, scene.lancer.target_error, scene.lancer.time_limit = "CUSTOM", 0.0, 0.0
+    scene.lancer.use_denoising = False
     scene.lancer.max_bounces = bounces
     scene.lancer.pixel_filter = "BOX"
     cycles = scene.cycles

@@ -21,7 +21,7 @@ from tools.harness.f12 import registered
 from tools.harness.places import header
 from tools.harness.terminal import Progress, make_parser
 
-from . import chart, curves, page, runs
+from . import chart, curves, denoised, page, runs
 
 _PIXELS = 192 * 108
 _REFERENCE, _QUICK_REFERENCE = 32768, 4096
@@ -38,6 +38,8 @@ def read_arguments():
     quick = "few samples, and no FINAL: some minutes"
     parser = make_parser(__doc__, quick=quick, threads=2, readme=True, output="tradeoff")
     parser.add_argument("--blend", type=Path, help="a file of Blender; default: the showcase")
+    parser.add_argument("--denoised", action="store_true", help="compare denoised pictures, by scene")
+    parser.add_argument("--only", default="", help="names of scenes for --denoised")
     parser.add_argument("--samples", type=int, help=f"of the reference; default: {_REFERENCE}")
     arguments = parser.parse_args()
     if arguments.readme and arguments.blend:
@@ -154,6 +156,9 @@ def measure(arguments, say):
 
 def main():
     arguments = read_arguments()
+    if arguments.denoised:
+        denoised.run(arguments)
+        return
     # Cycles prints a line for every picture that it writes.
     with captured_output() as (terminal, _):
         figures = measure(arguments, Progress(terminal))

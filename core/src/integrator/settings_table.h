@@ -21,7 +21,7 @@ enum class Pass : uint32_t {
   X(Choice, integrator, 0u, 2u)                                                                                                \
   X(Number, samples, 256u, 0xffffffffu)                                                                                        \
   X(Number, seed, 0u, 0xffffffffu)                                                                                             \
-  X(Number, max_bounces, 10u, 1024u)                                                                                           \
+  X(Number, max_bounces, 12u, 1024u)                                                                                           \
   X(Amount, contribution_threshold, 0.0f, 0xffffffffu)                                                                         \
   X(Amount, clamp_indirect, 0.0f, 0xffffffffu)                                                                                 \
   X(Number, split_lights, 1u, 16u)                                                                                             \
