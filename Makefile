@@ -146,10 +146,10 @@ differ: packages-run python-run build ## find what differs from Cycles without a
 	@$(python) $(tools) differ.run $(if $(SCENES),--scenes $(SCENES)) $(if $(SEED),--seed $(SEED)) \
 	  $(if $(BLENDER),--blender "$(BLENDER)") $(if $(QUICK),--quick)
 
-corpus: packages-run python-run build ## render public files by Lancer and by Cycles: make corpus [DIR=folder] [CLONES=folder] [ONLY='*'] [QUICK=1] [PX=320] [README=1]
+corpus: packages-run $(if $(DENOISED),python-charts,python-run) build ## render public files by Lancer and by Cycles: make corpus [DIR=folder] [CLONES=folder] [ONLY='*'] [QUICK=1] [PX=320] [README=1] [DENOISED=1]
 	@$(python) $(tools) corpus.run $(if $(DIR),--folder "$(DIR)") $(if $(CLONES),--clones "$(CLONES)") \
 	  $(if $(ONLY),--only '$(ONLY)') $(if $(QUICK),--quick) $(if $(PX),--pixels $(PX)) $(if $(BLENDER),--blender "$(BLENDER)") \
-	  $(if $(README),--readme)
+	  $(if $(README),--readme) $(if $(DENOISED),--denoised)
 
 addon: packages-run python-run build ## build the zips for this machine: build/lancer-VERSION-PLATFORM.zip (Blender 4.2+) and -blender3.zip (3.x)
 	@$(python) .ci/package.py

@@ -42,6 +42,7 @@ class Denoised:
     memory_bytes: int  # the images plus the largest growth of the process; 0 if unknown
     version: str
     combined: Combined | None = None  # with the error; None without noise
+    pair: tuple = ()  # the arguments of combine(), from which other figures can be computed
 
 
 def denoise(
@@ -58,20 +59,21 @@ def denoise(
     plan = Plan(*plan)
     started = time.monotonic()
     filters = (2 if noise else 1) + (len(guides) if plan.prefilters else 0)
-    combined = None
+    combined, pair = None, ()
     with Device(library or oidn.load(), filters, threads, poll, tell) as device:
         exposure = _Exposure(image[..., :3])
         # A black picture needs no denoising.
         if exposure.lit:
             run = _Run(device, exposure, plan, guides, noise)
             if noise:
-                combined = run.combined(image[..., :3], combines)
+                pair = run.pair(image[..., :3])
+                combined = combine(*pair, combines=combines)
             image[..., :3] = combined.picture if noise else run.colors(image[..., :3])
     held = image.nbytes + sum(array.nbytes for array in (*guides.values(), *noise.values()))
     number, memory = device.version, device.memory
     version = ".".join(str(part) for part in (number // 10000, number // 100 % 100, number % 100))
     size = memory.growth + held if memory.known else 0
-    return Denoised(image, time.monotonic() - started, size, version, combined)
+    return Denoised(image, time.monotonic() - started, size, version, combined, pair)
 
 
 class _Run:
@@ -102,10 +104,11 @@ class _Run:
         self._device.run(inputs, result, self._plan.quality, hdr=True, cleanAux=clean)
         return self._exposure.restored(result.swapaxes(0, 1) if turned else result, excess)
 
-    def combined(self, color, combines):
+    def pair(self, color):
+        """Return the arguments of combine()."""
         step = np.float32(_STEP) * self._noise["color"]
         first, second = self.colors(color + step), self.colors(color - step, turned=True)
-        return combine(color, self._noise["color"], first, second, _STEP, combines=combines)
+        return np.array(color), self._noise["color"], first, second, _STEP
 
 
 class _Exposure:

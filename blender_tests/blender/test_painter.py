@@ -54,6 +54,13 @@ def test_a_denoiser_that_fails_is_told(case):
     assert (got["denoised"], got["samples"], got["failure"], got["left"]) == (False, 4, "", 0)
 
 
+def test_no_picture_waits_for_the_denoiser(case):
+    got = case("slow_denoiser")
+    # All samples are shown while the first picture is still being denoised.
+    assert got["meanwhile"] == {"denoised": False, "calls": 1, "busy": True}
+    assert got["last"] == [64, True] and got["calls"] == 2 and got["left"] == 0
+
+
 def test_the_first_picture_is_as_coarse_as_it_must_be():
     """At a million pixels per second 0.07 s are 70 000 pixels: 240 x 135 is the finest size of 960 x 540 below that."""
     sizes, region = PixelSizes(), Rectangle(960, 540)

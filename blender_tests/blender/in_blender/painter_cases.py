@@ -176,3 +176,29 @@ def denoises():
         "left": _left(painter),
         "threads": [thread.name for thread in threading.enumerate() if "lancer" in thread.name],
     }
+
+
+def slow_denoiser():
+    """Let denoising take as long as the samples: pictures go on, and the last one is denoised."""
+    release, calls = threading.Event(), []
+    plain = denoiser.denoise
+
+    def slow(color, *_, **__):
+        calls.append(len(calls))
+        release.wait(_PATIENCE)
+        return denoiser.Denoised(color, 0.0, 0, "")
+
+    whole = _contents(samples=64)
+    painter = Painter()
+    denoiser.denoise = slow
+    try:
+        painter.want(_wanted(whole, _view(whole), denoising=True))
+        _until(painter, lambda: painter.picture is not None and painter.picture.samples == 64)
+        meanwhile = {"denoised": painter.picture.denoised, "calls": len(calls), "busy": painter.is_busy}
+        release.set()
+        _until(painter, lambda: not painter.is_busy)
+    finally:
+        denoiser.denoise = plain
+        release.set()
+    picture = painter.picture
+    return {"meanwhile": meanwhile, "last": [picture.samples, picture.denoised], "calls": len(calls), "left": _left(painter)}

@@ -15,7 +15,18 @@ def judge(scenes):
         return []
     rows = [_coverage(even), _interval(even, "holds", "error inside the interval"), _met(targets)]
     rows += [_whole(targets), _blocks(targets), _whole(even, "even samples, the control: "), _blocks(even, "even samples: ")]
-    return rows
+    return rows + _denoised(scenes)
+
+
+def _denoised(scenes):
+    runs = [run for scene in scenes.values() for run in scene.get("denoised", {}).values()]
+    if not runs:
+        return []
+    by_scene = [np.mean([share for share in run["inside_blocks"] if share is not None]) for run in runs]
+    value = float(np.mean(by_scene))
+    text = f"{100 * value:.1f} %, scenes from {100 * min(by_scene):.1f} to {100 * max(by_scene):.1f} %"
+    blocks = Verdict("denoised: means of blocks of 8 x 8 inside their bars", "95 +- 3 %", text, abs(value - 0.95) <= 0.03)
+    return [blocks, _interval(runs, "holds", "denoised: error inside the interval")]
 
 
 def shares(runs):

@@ -10,6 +10,8 @@ _EVEN += ["error inside interval", "with the bound on missed flashes", "reported
 _EVEN += ["actual error", "bias z", "blocks beyond 4"]
 _TARGET = ["scene", "requested", "target", "met", "actual error", "samples", "even samples needed", "bias", "bias z"]
 _TARGET += ["blocks beyond 4", "reference's share"]
+_DENOISED = ["scene", "samples", "pixels inside, of the noisy", "blocks of 8 x 8 inside", "error inside interval"]
+_DENOISED += ["with the bound on missed flashes", "told / actual", "actual error", "before denoising, as told"]
 _CYCLES = ["scene", "noise threshold", "actual error: median", "least", "most", "share at or below the threshold"]
 _CYCLES += ["bias", "bias z", "blocks beyond 4", "reference's share"]
 
@@ -24,6 +26,8 @@ def write(figures, folder):
         element("h2", "Target errors"),
         "Targets that need more samples than this program allows are scaled up.",
         page.table(_TARGET, [_target(name, run) for name, scene in scenes for run in scene["targets"]]),
+        element("h2", "Denoised pictures"),
+        page.table(_DENOISED, [row for name, scene in scenes for row in _denoised(name, scene)]),
         element("h2", "Cycles, noise threshold, for comparison"),
         "Cycles' noise threshold is not an error as defined here, and Cycles reports neither error bars nor intervals: the"
         " table has the actual errors of its pictures against its own reference, and the bias of their mean.",
@@ -65,6 +69,25 @@ def _even(name, scene):
             f"{np.mean(np.array(run['high']) / real):.3f}" if real.all() else "",
             f"{np.mean(real):.4f}",
             *_bias(run["bias"]),
+        ]
+
+
+def _denoised(name, scene):
+    for count, run in scene.get("denoised", {}).items():
+        inside, of_blocks = ([share for share in run[key] if share is not None] for key in ("inside", "inside_blocks"))
+        real = np.array(run["real"])
+        yield [
+            name,
+            count,
+            percent(np.mean(inside), 1) if inside else "no noise",
+            (percent(np.mean(of_blocks), 1), "" if abs(np.mean(of_blocks) - 0.95) <= 0.03 else "no")
+            if of_blocks
+            else "no noise",
+            percent(np.mean(run["holds"])),
+            percent(np.mean(run["holds_with_unmet"])),
+            f"{np.mean(np.array(run['told']) / real):.2f}" if real.all() else "",
+            f"{np.mean(real):.4f}",
+            f"{np.mean(run['noisy']):.4f}",
         ]
 
 

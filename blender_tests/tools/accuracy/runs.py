@@ -10,11 +10,12 @@ import numpy as np
 
 from addon.bindings.abi import Pass
 from addon.bindings.session import Scene, Session
+from addon.denoise import view_layer
 from addon.measure.schedule import SAMPLES, TARGET, Schedule
 from tools.harness.errors import Reference, luminance, root_mean_square
 from tools.harness.kept import kept_picture
 
-from . import figures
+from . import denoised, figures
 
 REFERENCE_PARTS = 8
 # Far from the seeds of the runs.
@@ -27,6 +28,7 @@ _UNBOUNDED = 1 << 20
 class Plan:
     seeds: int = 20
     counts: tuple = (64, 256)
+    denoised: tuple = (16, 64, 256)
     targets: tuple = (0.1, 0.05, 0.02, 0.01)
     # Samples per pixel that a run may take on average: a target that needs more is scaled up.
     budgets: tuple = (32, 96, 160, 256)
@@ -34,7 +36,7 @@ class Plan:
     threads: int = 2
 
 
-QUICK = Plan(seeds=6, counts=(64,), targets=(0.05,), budgets=(96,), reference=0.25)
+QUICK = Plan(seeds=6, counts=(64,), denoised=(16, 64), targets=(0.05,), budgets=(96,), reference=0.25)
 
 
 class Measured:
@@ -52,6 +54,7 @@ class Measured:
             even, last = self._even(reference)
             result["even"] = even
             result["targets"] = self._targets(reference, last)
+            result["denoised"] = self._denoised(reference)
         return result
 
     def _session(self, seed, **settings):
@@ -108,6 +111,28 @@ class Measured:
         for place, count in enumerate(self.plan.counts):
             result[str(count)] = _compare([run[place] for run in runs], reference)
         return result, [run[-1][2] for run in runs]
+
+    def _denoised(self, reference):
+        """Return the figures of denoised pictures by number of samples."""
+
+        def run(seed):
+            settings = dataclasses.replace(self.snapshot.settings, threads=1, seed=seed, split_lights=0, split_paths=0)
+            settings = view_layer.prepared(dataclasses.replace(settings, samples=self.plan.denoised[-1]))
+            results, first = [], 0
+            with Session(self.uploaded, self.snapshot.camera, settings) as session:
+                for count in self.plan.denoised:
+                    session.render(first, count - first)
+                    while not session.wait(1.0).finished:
+                        pass
+                    first = count
+                    results.append((denoised.denoised(session), session.error()))
+            return results
+
+        runs = self._each(run, range(self.plan.seeds), "denoised")
+        return {
+            str(count): denoised.compared([run[place] for run in runs], reference)
+            for place, count in enumerate(self.plan.denoised)
+        }
 
     def _targets(self, reference, told):
         result = []

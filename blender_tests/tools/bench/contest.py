@@ -1,16 +1,22 @@
 """One scene, all renderers: compare the pictures, then time the renderers by turns."""
 
 import hashlib
+import os
+import tempfile
 
 import numpy as np
 
-from tools.harness import estimates, pictures
+from tools.harness import denoised, estimates, pictures
+from tools.harness.displayed import Displayed
 from tools.harness.kept import kept_picture
 from tools.harness.turns import by_turns, middle, middles
 from tools.harness.workers import Failed
 
 from . import jobs, plan
 
+# The renderers that denoise, and their engines; the seeds of their curves, and the samples of a short run.
+_DENOISES = {"lancer": "LANCER", "cycles": "CYCLES"}
+_SEEDS, _QUICK_COUNTS = 3, (8, 16, 32, 64, 128)
 # Seeds of the two halves of references: far from the seeds of the rounds.
 _REFERENCE_SEEDS = (1001, 1002)
 
@@ -36,6 +42,7 @@ class Contest:
     def __init__(self, versions, missing, threads, limit, say):
         self.versions, self.missing, self.threads, self.limit, self.say = versions, missing, threads, limit, say
         self.snapshots = {}
+        self.halves = {}  # of references, by scene and renderer
 
     def measure(self, scene):
         """Return all figures of one scene, for the JSON."""
@@ -62,7 +69,27 @@ class Contest:
             self._compare(scene, shown, result["renderers"])
         for renderer in able:
             self._conclude(renderer, found, result["renderers"][renderer.key])
+        result["denoised"] = self._denoised(scene)
         return result
+
+    def _denoised(self, scene):
+        """Return the curves of Lancer's and Cycles' denoised pictures, and their comparison; None without both references."""
+        if any((scene.name, key) not in self.halves for key in _DENOISES):
+            return None
+        counts = _QUICK_COUNTS if scene.rounds < _SEEDS else denoised.COUNTS
+        points = {key: [] for key in _DENOISES}
+        for seed in range(1, min(scene.rounds, _SEEDS) + 1):
+            for key, engine in _DENOISES.items():
+                points[key].append(self._denoised_curve(scene, engine, counts, seed))
+                self.say(f"{scene.name}: denoised by {engine}, seed {seed}")
+        curves = {key: denoised.measured(found, Displayed.of(self.halves[scene.name, key])) for key, found in points.items()}
+        return {"curves": curves, "compared": denoised.compared(*curves.values())}
+
+    def _denoised_curve(self, scene, engine, counts, seed):
+        settings = {"name": scene.name, "threads": self.threads, "width": scene.width, "height": scene.height}
+        with tempfile.TemporaryDirectory() as folder:
+            walls = jobs.in_blender("denoised", engine=engine, counts=counts, seed=seed, folder=folder, **settings)
+            return [(count, seconds, np.load(os.path.join(folder, f"{count}.npy"))) for count, seconds in walls]
 
     def _settings(self, scene):
         settings = {"name": scene.name, "threads": self.threads, "width": scene.width, "height": scene.height}
@@ -120,6 +147,7 @@ class Contest:
                 self.render(renderer, scene, picture=str(path), **settings)
 
             halves.append(kept_picture(jobs.OUTPUT / "references" / f"{name}-{number}.npy", render))
+        self.halves[scene.name, renderer.key] = halves
         return estimates.join_halves(*halves)
 
     def _compare(self, scene, shown, records):

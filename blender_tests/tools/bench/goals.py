@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from tools.harness import estimates
+from tools.harness import denoised, estimates
 from tools.harness.verdicts import NOT_MEASURED, Verdict
 
 
@@ -41,6 +41,19 @@ def efficiency_ratios(figures, key, lifelike=False):
             pairs = [(record["errors"], record["seconds"]) for record in (ours, theirs)]
             result[name] = estimates.efficiency_ratio(*pairs)["value"]
     return result
+
+
+def _denoised(figures):
+    """Yield the comparisons of denoised pictures."""
+    for scene in figures.get("scenes", {}).values():
+        if scene.get("denoised"):
+            yield scene["denoised"]["compared"]
+
+
+def denoised_ratio(figures, kind):
+    """Return the geometric mean over scenes of a ratio at equal time, of drafts of all numbers of samples, or of the time."""
+    found = denoised.means(list(_denoised(figures)))
+    return found["time"] if kind == "time" else denoised.mean(found[kind].values())
 
 
 def get(figures, *keys):
@@ -233,6 +246,9 @@ _AGAINST_OTHERS = (
         1.5,
     ),
     _rays,
+    lambda f: at_most("denoised drafts at equal time against Cycles: squared error", "0.5x", denoised_ratio(f, "square"), 0.5),
+    lambda f: at_most("denoised drafts at equal time against Cycles: FLIP", "0.75x", denoised_ratio(f, "flip"), 0.75),
+    lambda f: at_most("denoised: time to Cycles' FLIP at 128 samples", "0.4x", denoised_ratio(f, "time"), 0.4),
     lambda f: at_least(
         "CLASSIC on 600 exact spheres against POV-Ray 3.7, rays/s", "5x", get(f, "classic", "times_faster"), 5.0
     ),

@@ -1,6 +1,6 @@
 """The output of the benchmark: bench.json, index.html, and the tables of README files."""
 
-from tools.harness import page, verdicts
+from tools.harness import denoised, page, verdicts
 from tools.harness.page import element, lines
 from tools.harness.places import README, TABLES
 
@@ -56,6 +56,9 @@ def _scene(name, scene, figures):
     head = ["renderer", "million samples/s", "spread", "million rays/s", "set-up s", "first sample s", "peak MB"]
     head += ["squared error", "efficiency", "95 %", "difference: median, 90th percentile, level", "clock"]
     yield page.table(head, [_renderer(figures["renderers"][key]["title"], one) for key, one in scene["renderers"].items()])
+    if scene.get("denoised"):
+        head, rows = denoised.table(scene["denoised"]["compared"])
+        yield page.table(head, rows)
     shown = [key for key, record in scene["renderers"].items() if "cannot" not in record and "failed" not in record]
     images = lines((element("img", None, class_="picture", src=f"pictures/{name}-{key}.png") for key in shown), "</td><td>")
     yield page.Markup(f"<table><tr><td>{images}</td></tr></table>")

@@ -1,5 +1,6 @@
 """start.py bench.worker TASK JSON: one measurement inside Blender's Python module; the answer is JSON."""
 
+import os
 import sys
 import time
 
@@ -11,7 +12,7 @@ import scenes
 from addon.bindings import abi
 from addon.bindings.session import Scene, Session
 from addon.export.scene import export_scene
-from tools.harness import workers
+from tools.harness import denoising, workers
 from tools.harness.f12 import press_f12, registered
 
 
@@ -105,6 +106,16 @@ def render(engine, name, threads, width, height, samples, seed, bounces=12, pict
     return result
 
 
+def denoised(engine, name, threads, width, height, counts, seed, folder):
+    """Press F12 with denoising at each number of samples; write folder/COUNT.npy and return [(count, seconds)]."""
+    scene = set_up(name, threads, width, height)
+    denoising.denoise(scene)
+    rendered = denoising.curve(scene, engine, counts, seed, set_samples)
+    for count, _, picture in rendered:
+        np.save(os.path.join(folder, f"{count}.npy"), picture)
+    return [(count, seconds) for count, seconds, _ in rendered]
+
+
 def snapshot(path, **settings):
     """Write the snapshot for renderers that do not run inside Blender."""
     set_up(**settings)
@@ -183,7 +194,7 @@ def versions():
     }
 
 
-TASKS = (f12, first_shown, render, snapshot, prepare, accelerators, versions)
+TASKS = (f12, first_shown, render, denoised, snapshot, prepare, accelerators, versions)
 
 if __name__ == "__main__":
     registered(lambda: workers.answer(*TASKS))

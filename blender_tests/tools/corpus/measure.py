@@ -8,7 +8,9 @@ from pathlib import Path
 import numpy as np
 
 from scenes.parity import figures
+from tools.harness import denoised
 from tools.harness.conversation import Ended
+from tools.harness.displayed import Displayed
 from tools.harness.pictures import write_pair
 from tools.harness.turns import by_turns
 from tools.parity.page import as_record
@@ -22,6 +24,9 @@ _LARGE_SQUARES = 8
 ENGINES = ("LANCER", "CYCLES")
 # Least share of the budget for renders, however long opening the file takes.
 _LEAST_SHARE = 0.4
+# Verdicts of files whose pictures converge to the same, and the seed of their denoised pictures, beyond those of the rounds.
+_COMPARABLE = ("equal", "noise")
+_DENOISED_SEED = 501
 # A file that differs without a message is rendered once more with this many times the samples.
 _AGAIN = 4
 
@@ -39,6 +44,7 @@ class Plan:
     limit: float = 300.0
     threads: int = 2
     memory: float = 8e9  # bytes of one process
+    denoised: bool = False  # whether denoised pictures are compared, too
 
 
 QUICK = Plan(budget=8.0, probe=2, rounds=2, least=2, most=64, limit=120.0)
@@ -157,6 +163,22 @@ class Measurement:
             self.row["engines"][engine] |= {"seconds": seconds[engine], "samples_per_second": rate}
         self.row |= {"samples": samples, "rounds": self.plan.rounds}
         self._compare_noise(*_finite(ours, theirs), seconds)
+        if self.plan.denoised and self.row["verdict"] in _COMPARABLE:
+            self._compare_denoised(*_finite(ours, theirs))
+
+    def _compare_denoised(self, ours, theirs):
+        """Compare denoised pictures; the means of even and of odd seeds are the references."""
+        curves = {}
+        for engine, pictures in zip(ENGINES, (ours, theirs), strict=True):
+            self._asked = engine
+            self.show(f"{engine.title()}, denoised")
+            fields = {"engine": engine, "counts": denoised.COUNTS[2:8], "seed": _DENOISED_SEED, "folder": str(self._folder)}
+            limit = len(denoised.COUNTS) * self.plan.limit
+            walls = self._talks[engine].ask("denoised", limit, self.plan.memory, **fields)
+            points = [(count, seconds, np.load(self._folder / f"{count}.npy")[..., :3]) for count, seconds in walls]
+            reference = Displayed.of([pictures[start::2].mean(axis=0)[..., :3] for start in (0, 1)])
+            curves[engine] = denoised.measured([points], reference)
+        self.row["denoised"] = {"curves": curves, "compared": denoised.compared(*curves.values())}
 
     def _judge(self, ours, theirs):
         if ours.shape != theirs.shape:

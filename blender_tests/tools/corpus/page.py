@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from tools.harness import page
+from tools.harness import denoised, page
 from tools.harness.page import element, lines, markdown, percent, times
 from tools.harness.places import TABLES
 
@@ -20,6 +20,7 @@ td img { width: 220px; display: block; background: #000 }
 .equal { color: #07702c } .noise { color: #3d7a4e } .black, .missing { color: #777 }
 """
 _HEAD = ("file", "verdict", "Lancer", "Cycles", "difference x 8", "mean", "99th", "noise", "speed", "variance", "efficiency")
+_HEAD += ("denoised: squared error", "FLIP", "time to FLIP")
 _HEAD += ("Lancer set-up, s", "export", "build", "Cycles set-up", "Lancer MB", "Cycles MB", "missing", "remarks")
 
 
@@ -85,6 +86,7 @@ def _row(row):
         _number(row.get("speed"), times),
         _number(row.get("variance", {}).get("ratio"), times),
         _number(row.get("efficiency"), times),
+        *(_number(value, times) for value in _denoised(row)),
         *(_number(ours.get(name), _seconds) for name in ("setup_seconds", "export_seconds", "build_seconds")),
         _number(theirs.get("setup_seconds"), _seconds),
         *(_number(engine.get("peak_bytes"), _megabytes) for engine in (ours, theirs)),
@@ -92,6 +94,14 @@ def _row(row):
         (element("div", lines(_remarks(row))), "remarks"),
     ]
     return page.row(cells, data_verdict=verdict)
+
+
+def _denoised(row):
+    """Return the ratios of squared error and FLIP at equal time, means over drafts, and of the time to Cycles' FLIP."""
+    found = row.get("denoised", {}).get("compared")
+    if not found:
+        return None, None, None
+    return denoised.mean(found["square"].values()), denoised.mean(found["flip"].values()), found["time"]
 
 
 def _remarks(row):
@@ -123,6 +133,14 @@ def summary(figures):
     )
     yield verdicts.sentence(found) + "."
     yield markdown(*_means(found["means"]))
+    rows = [_denoised(row) for row in figures["files"] if row.get("denoised")]
+    if rows:
+        means = [times(denoised.mean(column)) for column in zip(*rows, strict=True)]
+        worst = max(value for square, flip, _ in rows for value in (square, flip) if value is not None)
+        yield (
+            f"Denoised, {len(rows)} files, Lancer over Cycles at the time of Cycles' drafts: squared error {means[0]}, FLIP "
+            f"{means[1]}, at most {times(worst)}; time to Cycles' FLIP at {denoised.REACHED} samples {means[2]}."
+        )
 
 
 def update_tables(figures, path=TABLES):

@@ -34,6 +34,7 @@ def read_arguments():
     parser.add_argument("--clones", type=Path, help="folder of clones, owner+name or owner/name, that the list is taken out of")
     parser.add_argument("--list", type=Path, default=ROOT / "scenes" / "corpus.toml", help="in place of scenes/corpus.toml")
     parser.add_argument("--pixels", type=int, default=320, help="of the longer side")
+    parser.add_argument("--denoised", action="store_true", help="compare denoised pictures of files with equal pictures, too")
     parser.add_argument("--budget", type=float, help="seconds for the renders of a file")
     parser.add_argument("--limit", type=float, help="seconds after which one render counts as hung")
     parser.add_argument("--memory", type=float, help="GB that one process may take; default: 40 %% of the machine's")
@@ -47,6 +48,7 @@ def make_plan(arguments):
     memory = 1e9 * arguments.memory if arguments.memory else _SHARE_OF_MEMORY * machine()["memory_gib"] * 2**30
     given = {"budget": arguments.budget, "limit": arguments.limit}
     given = {name: value for name, value in given.items() if value is not None}
+    given["denoised"] = arguments.denoised
     return replace(plan, pixels=arguments.pixels, threads=arguments.threads, memory=memory, **given)
 
 

@@ -14,7 +14,7 @@ import numpy as np
 
 import addon
 from tools.corpus import alike, framing
-from tools.harness import workers
+from tools.harness import denoising, workers
 from tools.harness.f12 import press_f12
 
 
@@ -65,6 +65,22 @@ def render(engine, samples, seed, picture):
     return result
 
 
+def denoised(engine, counts, seed, folder):
+    """Press F12 with denoising at each number of samples; write folder/COUNT.npy and return [(count, seconds)]."""
+    scene = bpy.context.scene
+    denoising.denoise(scene)
+
+    def set_samples(scene, samples, seed):
+        alike.set_samples(scene, samples, seed)
+        denoising.denoise(scene)
+
+    rendered = denoising.curve(scene, engine, counts, seed, set_samples)
+    denoising.denoise(scene, False)
+    for count, _, picture in rendered:
+        np.save(os.path.join(folder, f"{count}.npy"), picture)
+    return [(count, seconds) for count, seconds, _ in rendered]
+
+
 class _timed_export:
     """A context: the list of the seconds of each export within it."""
 
@@ -85,7 +101,7 @@ class _timed_export:
         addon.engine.render_engine.export_scene = self.export
 
 
-TASKS = {"open": open_file, "render": render}
+TASKS = {"open": open_file, "render": render, "denoised": denoised}
 
 
 def serve(answers):

@@ -1,37 +1,13 @@
-"""Denoised pictures of Lancer and of Cycles by F12, and their errors at equal time."""
+"""Errors of denoised pictures of Lancer and of Cycles at equal time."""
 
 import math
 import statistics
-
-import bpy
-
-from tools.harness.f12 import press_f12
 
 # Samples per pixel of the pictures, and those of Cycles at whose time both are compared.
 COUNTS = (1, 2, 4, 8, 16, 32, 64, 128, 256)
 DRAFTS = (16, 32, 64)
 # Samples of Cycles whose FLIP is to be reached.
 REACHED = 128
-
-
-def denoise(scene, on=True):
-    """Let both engines denoise with their own guides, by the best network."""
-    scene.lancer.use_denoising = scene.cycles.use_denoising = on
-    scene.cycles.denoiser = "OPENIMAGEDENOISE"
-    if hasattr(scene.cycles, "denoising_use_gpu"):
-        scene.cycles.denoising_use_gpu = False
-    bpy.context.view_layer.update()
-
-
-def curve(scene, engine, counts, seed, set_samples):
-    """Return [(samples, seconds of F12, picture)]; the first render, which fills the caches, is left out."""
-    scene.render.engine = engine
-    found = []
-    for count in (counts[0], *counts):
-        set_samples(scene, count, seed)
-        rendered = press_f12(scene)
-        found.append((count, rendered.wall, rendered.picture[..., :3]))
-    return found[1:]
 
 
 def measured(points, reference):
@@ -77,6 +53,27 @@ def at(rows, key, value, wanted):
             share = math.log(value / before[key]) / math.log(after[key] / before[key])
             return before[wanted] * (after[wanted] / before[wanted]) ** share
     return None
+
+
+HEAD = ["denoised, over Cycles", *(f"squared error, {n}" for n in DRAFTS), *(f"FLIP, {n}" for n in DRAFTS)]
+HEAD.append(f"time to FLIP of {REACHED}")
+
+
+def cells(found):
+    """Return the cells of HEAD after the first one; found: as from compared()."""
+    ratios = [found[kind].get(str(n)) for kind in ("square", "flip") for n in DRAFTS]
+    return [f"{ratio:.2f}x" if ratio is not None else "" for ratio in (*ratios, found["time"])]
+
+
+def table(found, name="Lancer"):
+    """Return (head, rows) of one comparison."""
+    return HEAD, [[name, *cells(found)]]
+
+
+def means(compared):
+    """Return the geometric means of several comparisons, in the form of one."""
+    found = {kind: {str(n): mean(one[kind].get(str(n)) for one in compared) for n in DRAFTS} for kind in ("square", "flip")}
+    return found | {"time": mean(one["time"] for one in compared)}
 
 
 def mean(ratios):

@@ -14,8 +14,8 @@ import scenes
 from scenes.parity import png
 from scenes.render import captured_output
 from tools.bench import worker
-from tools.harness import denoised
-from tools.harness.denoised import COUNTS, DRAFTS, REACHED
+from tools.harness import denoised, denoising
+from tools.harness.denoised import COUNTS
 from tools.harness.displayed import Displayed, displayed
 from tools.harness.f12 import press_f12
 from tools.harness.page import element, lines, markdown, put_between, table, write
@@ -38,7 +38,9 @@ def run(arguments):
     _page(figures, folder)
     chart(figures, folder)
     if arguments.readme:
-        put_between(TABLES, "denoised", [_told(figures), markdown(_HEAD, list(_rows(figures)))], "tradeoff DENOISED=1")
+        put_between(
+            TABLES, "denoised", [_told(figures), markdown(denoised.HEAD, list(_rows(figures))[-1:])], "tradeoff DENOISED=1"
+        )
         shutil.copyfile(folder / "denoised.png", ROOT / "scenes" / "denoised.png")
     print(folder / "index.html")
 
@@ -50,11 +52,7 @@ def measure(arguments, say):
     for name in chosen:
         scene = _opened(name, arguments.threads)
         found[getattr(name, "stem", name)] = study(scene, arguments, say, getattr(name, "stem", name))
-    compared = [one["compared"] for one in found.values()]
-    means = {
-        kind: {str(n): denoised.mean(one[kind].get(str(n)) for one in compared) for n in DRAFTS} for kind in ("square", "flip")
-    }
-    means["time"] = denoised.mean(one["time"] for one in compared)
+    means = denoised.means([one["compared"] for one in found.values()])
     return {**told, "blender": bpy.app.version_string, "threads": arguments.threads, "scenes": found, "means": means}
 
 
@@ -81,7 +79,7 @@ def study(scene, arguments, say, name):
     counts = COUNTS[2:8] if arguments.quick else COUNTS
     samples = arguments.samples or (_QUICK_REFERENCE if arguments.quick else _REFERENCE)
     references = {}
-    denoised.denoise(scene, False)
+    denoising.denoise(scene, False)
     for engine, share in (("LANCER", 1), ("CYCLES", _CYCLES_SHARE)):
         scene.render.engine = engine
         halves = []
@@ -90,11 +88,11 @@ def study(scene, arguments, say, name):
             halves.append(press_f12(scene).picture[..., :3])
         references[engine] = Displayed.of(halves)
         say(f"{name}: reference of {engine}")
-    denoised.denoise(scene)
+    denoising.denoise(scene)
     curves = {"LANCER": [], "CYCLES": []}
     for seed in range(1, 1 + (_QUICK_SEEDS if arguments.quick else _SEEDS)):
         for engine, found in curves.items():
-            found.append(denoised.curve(scene, engine, counts, seed, worker.set_samples))
+            found.append(denoising.curve(scene, engine, counts, seed, worker.set_samples))
         say(f"{name}: seed {seed}")
     rows = {engine: denoised.measured(found, references[engine]) for engine, found in curves.items()}
     _side_by_side(arguments.output / "pictures", name, curves, references["LANCER"])
@@ -128,18 +126,10 @@ def _side_by_side(folder, name, curves, reference):
         (folder / f"{name}-{kind}.png").write_bytes(png.encode(picture[::-1]))
 
 
-_HEAD = ["", *(f"squared error, {n}" for n in DRAFTS), *(f"FLIP, {n}" for n in DRAFTS), f"time to FLIP of {REACHED}"]
-
-
 def _rows(figures):
     for name, one in figures["scenes"].items():
-        yield [name, *_cells(one["compared"])]
-    yield ["geometric mean", *_cells(figures["means"])]
-
-
-def _cells(compared):
-    ratios = [compared[kind].get(str(n)) for kind in ("square", "flip") for n in DRAFTS]
-    return [f"{ratio:.2f}x" if ratio is not None else "" for ratio in (*ratios, compared["time"])]
+        yield [name, *denoised.cells(one["compared"])]
+    yield ["geometric mean", *denoised.cells(figures["means"])]
 
 
 def _told(figures):
@@ -152,7 +142,7 @@ def _told(figures):
 
 
 def _page(figures, folder):
-    parts = [_told(figures), element("img", None, src="denoised.svg", alt="chart"), table(_HEAD, list(_rows(figures)))]
+    parts = [_told(figures), element("img", None, src="denoised.svg", alt="chart"), table(denoised.HEAD, list(_rows(figures)))]
     for name, one in figures["scenes"].items():
         parts.append(element("h3", name))
         images = (element("img", None, src=f"pictures/{name}-{kind}.png") for kind in ("converged", "lancer", "cycles"))

@@ -24,12 +24,16 @@ Camera normalised(Camera camera, const Normalisation &normalisation) {
   return camera;
 }
 
+// A film that is refined doubles the samples of its tiles: beside the few tiles in work, each has one sum, or two.
+constexpr uint32_t kSamplesOfTwoSums = 3;
+
 // Throws Error for a film that exceeds the machine's memory.
 const Camera &checked_memory(const Camera &camera, const IntegratorSettings &settings) {
   const uint32_t samples = std::max(settings.samples, 1u);
   check_memory("film: " + std::to_string(camera.region_width) + " x " + std::to_string(camera.region_height) + " pixels, " +
                    std::to_string(samples) + " samples",
-               Film::bytes_needed(camera.region_width, camera.region_height, settings.passes, samples));
+               Film::bytes_needed(camera.region_width, camera.region_height, settings.passes,
+                                  settings.refines ? std::min(samples, kSamplesOfTwoSums) : samples));
   return camera;
 }
 
