@@ -58,7 +58,7 @@ _CALLS = {
     "lancer_session_refine": (_u64, c_double, c_double),
     "lancer_session_error": (_u64, c_double, POINTER(Error)),
     "lancer_combine_denoised": (
-        *(_u32, _u32, _Array, _Array, _Array, _Array),
+        *(_u32, _u32, _Array, _Array, _Array, _Array, _Array),
         *(c_double, _u32, c_double, _u32, _Array, _Array, POINTER(DenoisedError)),
     ),
     "lancer_session_read": (_u64, _u32, _Array, c_size_t),

@@ -33,6 +33,7 @@ class Noise(NamedTuple):
     color: np.ndarray
     albedo: np.ndarray | None = None
     normal: np.ndarray | None = None
+    errors: np.ndarray | None = None  # of the colours' luminance, (height, width, 1)
 
 
 @dataclass(frozen=True)
@@ -55,6 +56,7 @@ def denoise(
     the result. The arguments are not modified. threads: 0 = all. tell(fraction) is called while waiting. Raise Cancelled if
     poll returns True, LancerError for inputs of wrong shape or with values that are not finite, and if the library fails.
     """
+    errors = noise.errors if noise is not None else None
     image, guides, noise = _checked(color, {"albedo": albedo, "normal": normal}, noise)
     plan = Plan(*plan)
     started = time.monotonic()
@@ -66,7 +68,7 @@ def denoise(
         if exposure.lit:
             run = _Run(device, exposure, plan, guides, noise)
             if noise:
-                pair = run.pair(image[..., :3])
+                pair = *run.pair(image[..., :3]), errors
                 combined = combine(*pair, combines=combines)
             image[..., :3] = combined.picture if noise else run.colors(image[..., :3])
     held = image.nbytes + sum(array.nbytes for array in (*guides.values(), *noise.values()))
@@ -147,7 +149,7 @@ def _checked(color, guides, noise):
         raise LancerError(f"denoising: colours of shape {shape}, not (height, width, 3 or 4)")
     if guides["normal"] is not None and guides["albedo"] is None:
         raise LancerError("denoising: a normal needs an albedo beside it")
-    noise = Noise(*noise)._asdict() if noise is not None else {}
+    noise = {name: array for name, array in noise._asdict().items() if name != "errors"} if noise is not None else {}
     images, noises = {}, {}
     for kind, given, into in (("", guides, images), ("noise of ", noise, noises)):
         for name, array in given.items():

@@ -16,6 +16,7 @@ DECLARATION = "denoised: a guess that can remove details; its own error is told 
 AS_IT_IS = "the picture is shown with its noise"
 # Passes of the picture's own samples: guides of the network as in Cycles by default, and the noise of each.
 PASSES = (Pass.ALBEDO, Pass.DENOISING_NORMAL, Pass.HALVES, Pass.ALBEDO_HALVES, Pass.NORMAL_HALVES)
+_NOISE = (Pass.HALVES, Pass.ALBEDO_HALVES, Pass.NORMAL_HALVES, Pass.ERROR)
 
 
 def wanted(scene, view_layer):
@@ -57,7 +58,7 @@ def inputs(session):
     samples = session.statistics().samples / pixels
     noise = None
     if session.error().known:
-        noise = denoiser.Noise(*(session.read(source) for source in (Pass.HALVES, Pass.ALBEDO_HALVES, Pass.NORMAL_HALVES)))
+        noise = denoiser.Noise(*(session.read(source) for source in _NOISE))
     return {
         "color": session.read(Pass.COMBINED),
         "albedo": session.read(Pass.ALBEDO),

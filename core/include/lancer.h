@@ -924,14 +924,16 @@ typedef struct lancer_denoised_error {
 } lancer_denoised_error;
 /* Combines a picture with two denoised versions of it, and estimates the error of the result. All pictures are
  * [height][width][3], linear, finite. noisy: the pass COMBINED without alpha; noise: the pass HALVES, from at least two
- * samples; first, second: a denoiser's results for noisy + step noise and noisy - step noise, with step in (0, 1]. combines: 1
+ * samples; errors: the pass ERROR,
+ * beyond three times of which no luminance may leave noisy where combines is 1; may be NULL.
+ * first, second: a denoiser's results for noisy + step noise and noisy - step noise, with step in (0, 1]. combines: 1
  * = the result is the combination with the least estimated error, which converges with the samples; 0 = the mean of first and
  * second. picture: receives the result, and may be one of the inputs. bars: receives the standard error of the mean luminance
  * of each block, [(height + block - 1) / block][(width + block - 1) / block]; block: side in pixels, 1 = of each pixel. */
 LANCER_API lancer_status lancer_combine_denoised(uint32_t width, uint32_t height, const float *noisy, const float *noise,
-                                                 const float *first, const float *second, double step, uint32_t combines,
-                                                 double confidence, uint32_t block, float *picture, float *bars,
-                                                 lancer_denoised_error *error);
+                                                 const float *errors, const float *first, const float *second, double step,
+                                                 uint32_t combines, double confidence, uint32_t block, float *picture,
+                                                 float *bars, lancer_denoised_error *error);
 
 /* ---- replay ------------------------------------------------------------------------------------------------------ */
 

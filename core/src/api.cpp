@@ -46,12 +46,12 @@ const char *lancer_last_error(void) { return last_error; }
 
 uint32_t lancer_sizeof(uint32_t which) {
   static constexpr size_t sizes[LANCER_STRUCT_COUNT] = {
-      sizeof(lancer_mesh),         sizeof(lancer_instance),    sizeof(lancer_parameter), sizeof(lancer_lobe),
-      sizeof(lancer_material),     sizeof(lancer_light),       sizeof(lancer_camera),    sizeof(lancer_settings),
-      sizeof(lancer_progress),     sizeof(lancer_statistics),  sizeof(lancer_hit),       sizeof(lancer_vertex),
-      sizeof(lancer_light_sample), sizeof(lancer_bsdf_sample), sizeof(lancer_attribute), sizeof(lancer_image),
-      sizeof(lancer_node),         sizeof(lancer_principled),  sizeof(lancer_world),     sizeof(lancer_lobe_info),
-      sizeof(lancer_error), sizeof(lancer_denoised_error)};
+      sizeof(lancer_mesh),         sizeof(lancer_instance),      sizeof(lancer_parameter), sizeof(lancer_lobe),
+      sizeof(lancer_material),     sizeof(lancer_light),         sizeof(lancer_camera),    sizeof(lancer_settings),
+      sizeof(lancer_progress),     sizeof(lancer_statistics),    sizeof(lancer_hit),       sizeof(lancer_vertex),
+      sizeof(lancer_light_sample), sizeof(lancer_bsdf_sample),   sizeof(lancer_attribute), sizeof(lancer_image),
+      sizeof(lancer_node),         sizeof(lancer_principled),    sizeof(lancer_world),     sizeof(lancer_lobe_info),
+      sizeof(lancer_error),        sizeof(lancer_denoised_error)};
   return which < LANCER_STRUCT_COUNT ? uint32_t(sizes[which]) : 0;
 }
 
@@ -280,8 +280,8 @@ lancer_status lancer_session_error(lancer_session session, double confidence, la
 }
 
 lancer_status lancer_combine_denoised(uint32_t width, uint32_t height, const float *noisy, const float *noise,
-                                      const float *first, const float *second, double step, uint32_t combines,
-                                      double confidence, uint32_t block, float *picture, float *bars,
+                                      const float *errors, const float *first, const float *second, double step,
+                                      uint32_t combines, double confidence, uint32_t block, float *picture, float *bars,
                                       lancer_denoised_error *error) {
   return guard([&] {
     const size_t numbers = 3 * size_t(width) * height;
@@ -303,10 +303,13 @@ lancer_status lancer_combine_denoised(uint32_t width, uint32_t height, const flo
       bad_argument("combine_denoised: step " + std::to_string(step) + " must be above 0 and at most 1");
     if (combines > 1 || block == 0)
       bad_argument("combine_denoised: combines " + std::to_string(combines) + ", block " + std::to_string(block));
-    std::vector<float> errors;
-    const DenoisedError from =
-        combine_denoised({width, height, noisy, noise, first, second, step, combines != 0}, confidence, block, picture, errors);
-    std::copy(errors.begin(), errors.end(), bars);
+    const auto known = [](float value) { return std::isfinite(value) && value >= 0.0f; };
+    if (errors && !std::all_of(errors, errors + numbers / 3, known))
+      bad_argument("combine_denoised: errors must be finite and not negative");
+    std::vector<float> of_blocks;
+    const DenoisedInput input = {width, height, noisy, noise, errors, first, second, step, combines != 0};
+    const DenoisedError from = combine_denoised(input, confidence, block, picture, of_blocks);
+    std::copy(of_blocks.begin(), of_blocks.end(), bars);
     *error = {from.error, from.low, from.high, from.moved};
     return LANCER_OK;
   });

@@ -255,6 +255,34 @@ DenoisedError error_of(const Differences &of, double confidence) {
   return {.error = middle, .low = std::min(far, middle) / reach, .high = std::max(near, middle) * reach};
 }
 
+// Standard errors of the picture within which the luminance of a pixel may change. Fewer would keep noise: of Gaussian errors,
+// 0.3 % exceed this number.
+constexpr double kMostErrors = 3.0;
+
+// Returns the share of the way from a pixel's luminance back to that of the picture, until they are close enough. All in one
+// unit.
+double way_back(double apart, double noise, double error) {
+  const double allowed = kMostErrors * std::max(std::abs(noise), error);
+  return std::abs(apart) > allowed ? 1.0 - allowed / std::abs(apart) : 0.0;
+}
+
+// Returns the lower one of each number and the median of the 3 x 3 numbers around it: without single bright pixels, whose own
+// luminance would hide that they are wrong.
+std::vector<double> without_peaks(const std::vector<double> &values, uint32_t width, uint32_t height) {
+  std::vector<double> result(values.size());
+  std::array<double, 9> near;
+  for (uint32_t y = 0; y < height; ++y)
+    for (uint32_t x = 0; x < width; ++x) {
+      size_t count = 0;
+      for (int64_t dy = -1; dy <= 1; ++dy)
+        for (int64_t dx = -1; dx <= 1; ++dx)
+          near[count++] = values[size_t(mirrored(y + dy, height)) * width + mirrored(x + dx, width)];
+      std::nth_element(near.begin(), near.begin() + 4, near.end());
+      result[size_t(y) * width + x] = std::min(values[size_t(y) * width + x], near[4]);
+    }
+  return result;
+}
+
 // Side of the blocks in which moved light is looked for.
 constexpr uint32_t kBlock = 16;
 
@@ -299,22 +327,43 @@ DenoisedError combine_denoised(const DenoisedInput &input, double confidence, ui
   // Add the share of the residual that is not noise, and the noise that comes with it.
   if (input.combines)
     keep_shares(level, kLevels);
+  double sum = 0.0;
+  std::vector<double> results(pixels); // luminances
   for (size_t i = 0; i < pixels; ++i) {
     const glm::vec3 kept = input.combines ? level.residual.values[i] : glm::vec3(0.0f);
-    const glm::dvec3 result = denoised(i) + glm::dvec3(kept) * scale.of(i);
-    for (int c = 0; c < 3; ++c)
-      picture[3 * i + size_t(c)] = nearest_float(result)[c];
+    glm::dvec3 result = denoised(i) + glm::dvec3(kept) * scale.of(i);
     if (input.combines) {
       of.apart.values[i] += luminance(kept);
       of.kept.values[i] += luminance(level.taken.values[i]);
     }
+    // Return pixels that the picture knows better.
+    if (input.combines && input.errors) {
+      const glm::dvec3 noisy = Scale::color(input.noisy, i);
+      const double back = way_back(luminance(result - noisy), luminance(Scale::color(input.noise, i)), double(input.errors[i]));
+      result += (noisy - result) * back;
+      of.apart.values[i] *= float(1.0 - back);
+      of.kept.values[i] += float(back) * (of.noise.values[i] - of.kept.values[i]);
+    }
+    for (int c = 0; c < 3; ++c)
+      picture[3 * i + size_t(c)] = nearest_float(result)[c];
+    sum += results[i] = std::abs(luminance(result));
   }
+  // Relate differences to the result: a wrong denoised pixel is no measure of its own error.
+  results = without_peaks(results, width, height);
+  for (size_t i = 0; i < pixels && sum > 0.0; ++i) {
+    const double factor = scale.of(i) / (results[i] + 0.01 * sum / double(pixels));
+    for (Numbers *values : {&of.apart, &of.noise, &of.kept})
+      values->values[i] = std::clamp(float(double(values->values[i]) * factor), -kMost, kMost);
+  }
+  const auto absolute = [&](size_t i) {
+    return (sum > 0.0 ? results[i] + 0.01 * sum / double(pixels) : scale.of(i)) / scale.unit;
+  };
   // Estimate the error of the result.
   DenoisedError error = error_of(of, confidence);
   error.moved = moved;
   for (size_t i = 0; i < pixels; ++i)
     for (Numbers *values : {&of.apart, &of.noise, &of.kept})
-      values->values[i] = std::clamp(values->values[i] * float(scale.of(i) / scale.unit), -kMost, kMost);
+      values->values[i] = std::clamp(float(double(values->values[i]) * absolute(i)), -kMost, kMost);
   const Numbers squares = block > 1 ? squared_errors(of.blocks(block), kBlockReach) : squared_errors(of, kReach);
   bars.resize(squares.values.size());
   for (size_t i = 0; i < bars.size(); ++i)

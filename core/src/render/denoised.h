@@ -14,7 +14,9 @@ namespace lancer {
 //   over 2 step, G, is the part of the noise that the denoiser leaves, since it is the response to noise like that of Y.
 struct DenoisedInput {
   uint32_t width, height;
-  const float *noisy, *noise, *first, *second;
+  const float *noisy, *noise;
+  const float *errors; // [height][width]: standard error of the luminance of each pixel of Y; null: not known
+  const float *first, *second;
   double step;
   bool combines; // false: the result is D
 };
@@ -41,6 +43,8 @@ struct DenoisedError {
 // - G> / <R, R> with sums over a neighbourhood: the share of the residual that is not noise. Such a share is James' and Stein's
 // shrinkage of Y towards D. As the sums are uncertain, w takes the upper end of the noise's interval, two standard deviations:
 // a share that is too small costs less than one that is too large.
+// The luminance of a pixel of Z lies within three standard errors of Y, or three times the noise of the pixel where that is
+// larger, as for a single bright sample. A pixel that Y knows, such as the black beside a lamp, keeps its value.
 DenoisedError combine_denoised(const DenoisedInput &input, double confidence, uint32_t block, float *picture,
                                std::vector<float> &bars);
 
