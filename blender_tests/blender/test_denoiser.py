@@ -209,11 +209,11 @@ def test_the_error_is_told_with_the_noise_of_the_samples(library, pictures):
     noisy, halves = samples.mean(axis=0), 0.5 * (samples[:8].mean(axis=0) - samples[8:].mean(axis=0))
     nothing = np.zeros_like(albedo)
     noise = denoiser.Noise(halves, nothing, nothing)
-    given = [array.copy() for array in (noisy, *noise)]
+    given = [array.copy() for array in (noisy, *noise[:3])]
     plain = denoiser.denoise(noisy, albedo, normal, library=library)
     alone = denoiser.denoise(noisy, albedo, normal, noise, combines=False, library=library)
     got = denoiser.denoise(noisy, albedo, normal, noise, library=library)
-    assert all(np.array_equal(array, before) for array, before in zip((noisy, *noise), given, strict=True))
+    assert all(np.array_equal(array, before) for array, before in zip((noisy, *noise[:3]), given, strict=True))
     assert plain.combined is None and got.combined.bars.shape == (HEIGHT, WIDTH)
     for found in (alone, got):
         level = luminance(truth) + 0.01 * luminance(truth).mean()
