@@ -54,7 +54,7 @@ def _light_paths(own, cycles):
     if own.clamp_indirect > 0.0:
         ours.append(f"Clamp Indirect {own.clamp_indirect:g}")
     changed = any(_changed(cycles, name) for name, _ in theirs)
-    # Nobody asked for the limits of a new scene.
+    # Leave out the limits of a new scene, which are defaults.
     if theirs and (changed or any(_changed(own, name) for name in ("max_bounces", "transparent_bounces", "clamp_indirect"))):
         told = _listed([words for _, words in theirs])
         severity = Severity.DIFFERENT if changed else Severity.HINT

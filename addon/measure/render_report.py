@@ -5,7 +5,7 @@ import math
 from enum import IntEnum
 
 from ..bindings.enums import Integrator
-from .schedule import CANCELLED, SAMPLES, TARGET, TIME
+from .schedule import CANCELLED, DENOISED_POWER, POWER, SAMPLES, TARGET, TIME
 
 # Shares of light below this are not reported.
 _NOTHING = 5e-5
@@ -80,8 +80,7 @@ def missed(numbers, settings):
     if not math.isfinite(bound):
         yield f"{percent(target)} was not reached: the error is unknown until each pixel has two samples"
         return
-    # The error falls with the square root of the number of samples, that of a denoised picture with about the third root.
-    more = (bound / target) ** (3 if of_denoised else 2)
+    more = (bound / target) ** (DENOISED_POWER if of_denoised else POWER)
     helps = []
     samples = numbers["samples_most"] * more
     if numbers["ended_by"] == SAMPLES or samples > settings.samples:

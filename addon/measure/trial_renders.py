@@ -15,7 +15,7 @@ from ..bindings.abi import LancerError
 from ..bindings.enums import Integrator
 from ..bindings.session import Cancelled, Scene, Session
 from .costs import small_picture, with_splits
-from .schedule import FIRST_LOOK
+from .schedule import DENOISED_POWER, FIRST_LOOK
 
 # Limits of the pixels of the larger picture, and the smaller picture's fraction and least pixels.
 _FEWEST, _MOST = 1024, 36864
@@ -29,8 +29,8 @@ _ENOUGH = 0.01  # an error below which the measurement ends
 _CLASSIC_DEPTH = 16  # the core's limit
 # Expected exponents p of error ~ samples^-p. Of a picture: 1/2 for independent samples, up to 3/4 at edges and 1 in smooth
 # places for low-discrepancy samples, less if further samples keep finding brighter fireflies. Denoised pictures have less noise
-# at few samples, and less to gain: 0.33 from 16 to 256 samples on twenty scenes.
-SLOPE, DENOISED_SLOPE = 0.55, 0.33
+# at few samples, and less to gain.
+SLOPE, DENOISED_SLOPE = 0.55, 1.0 / DENOISED_POWER
 _REACH = 1.96  # standard deviations of the 95 % interval of a Gaussian
 
 

@@ -208,6 +208,9 @@ def keep_first_defaults(scene):
 
 @persistent
 def _loaded(*_):
+    # A new file, from the startup file, has no path and starts with the defaults.
+    if not bpy.data.filepath:
+        return
     for scene in bpy.data.scenes:
         keep_first_defaults(scene)
 

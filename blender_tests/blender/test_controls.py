@@ -82,7 +82,7 @@ def test_the_export_reads_what_it_lists(found):
 
 
 def test_what_the_export_reads_is_shown(found):
-    # What a file was saved with is no choice.
+    # The mark of the defaults that a file was saved with is no choice of the user.
     own = {name for name in found["known"] if name.startswith(OWN)} - {"LancerSceneSettings.defaults"}
     assert listed(found["version"]) | own | {"RenderSettings.use_persistent_data"} <= found["shown"]
     assert found["act"] - found["shown"] <= set(ELSEWHERE)

@@ -57,7 +57,7 @@ def test_light_paths_that_differ_are_told_in_one_line(case):
 
     rest = "Filter Glossy 1 and Clamp Indirect 10"
     kinds = "Diffuse 4, Glossy 4"
-    # Nobody has changed either engine's limits.
+    # Defaults of both engines are not told.
     assert got["start"] == []
     # A limit of four bounces of a kind has no effect with a total of three.
     assert got["few bounces here"] == line(f"Total 12, {rest}", "Max Bounces 3")

@@ -1,149 +1,18 @@
 #include "render/denoised.h"
 
 #include "render/picture_error.h"
+#include "render/residual.h"
 #include "sampling/elementary.h"
 #include "simd/vectors.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <span>
 #include <vector>
 
 namespace lancer {
 
 namespace {
-
-// A picture of one number or of three numbers a pixel.
-template <class Value> struct Grid {
-  uint32_t width = 0, height = 0;
-  std::vector<Value> values;
-
-  Grid(uint32_t w, uint32_t h) : width(w), height(h), values(size_t(w) * h, Value(0.0f)) {}
-  Value *row(uint32_t y) { return values.data() + size_t(y) * width; }
-  const Value *row(uint32_t y) const { return values.data() + size_t(y) * width; }
-};
-using Colors = Grid<glm::vec3>;
-using Numbers = Grid<float>;
-
-// Returns the place i of an infinite row that repeats the row of count places mirrored at its ends.
-uint32_t mirrored(int64_t i, uint32_t count) {
-  const int64_t period = 2 * int64_t(count);
-  i = (i % period + period) % period;
-  return uint32_t(i < count ? i : period - 1 - i);
-}
-
-// Returns the convolution with a symmetric kernel in both directions; kernel: from its middle on. step: of the kept pixels.
-template <class Value> Grid<Value> convolved(const Grid<Value> &grid, std::span<const float> kernel, uint32_t step = 1) {
-  const auto reach = int64_t(kernel.size()) - 1;
-  const uint32_t width = (grid.width + step - 1) / step, height = (grid.height + step - 1) / step;
-  Grid<Value> rows(grid.width, height), result(width, height);
-  for (uint32_t y = 0; y < height; ++y)
-    for (int64_t d = -reach; d <= reach; ++d) {
-      const Value *from = grid.row(mirrored(int64_t(y) * step + d, grid.height));
-      const float weight = kernel[size_t(std::abs(d))];
-      Value *to = rows.row(y);
-      for (uint32_t x = 0; x < grid.width; ++x)
-        to[x] += weight * from[x];
-    }
-  std::vector<Value> wide(grid.width + 2 * size_t(reach));
-  for (uint32_t y = 0; y < height; ++y) {
-    const Value *from = rows.row(y);
-    for (size_t i = 0; i < wide.size(); ++i)
-      wide[i] = from[mirrored(int64_t(i) - reach, grid.width)];
-    Value *to = result.row(y);
-    for (int64_t d = -reach; d <= reach; ++d) {
-      const float weight = kernel[size_t(std::abs(d))];
-      for (uint32_t x = 0; x < width; ++x)
-        to[x] += weight * wide[size_t(int64_t(x) * step + d + reach)];
-    }
-  }
-  return result;
-}
-
-// The kernel of the pyramid.
-constexpr std::array<float, 3> kSmall = {6.0f / 16.0f, 4.0f / 16.0f, 1.0f / 16.0f};
-
-// Returns the kernel of a neighbourhood whose weights fall to 0 at this distance, each raised to a power.
-std::vector<float> tent(int reach, int power = 1) {
-  std::vector<float> kernel;
-  for (int d = 0; d < reach; ++d) {
-    const float weight = float(reach - d) / float(reach * reach);
-    kernel.push_back(power == 1 ? weight : weight * weight);
-  }
-  return kernel;
-}
-
-Colors reduced(const Colors &fine) { return convolved<glm::vec3>(fine, kSmall, 2); }
-
-// Adds a coarser level times a sign to a finer one, interpolated with the pyramid's kernel.
-void add_expanded(const Colors &coarse, float sign, Colors &fine) {
-  const auto at = [](const glm::vec3 *line, uint32_t place, uint32_t count, uint32_t stride) {
-    const uint32_t i = place / 2;
-    const auto value = [&](int64_t k) { return line[size_t(std::clamp<int64_t>(k, 0, int64_t(count) - 1)) * stride]; };
-    return place % 2 == 0 ? 0.125f * value(int64_t(i) - 1) + 0.75f * value(i) + 0.125f * value(int64_t(i) + 1)
-                          : 0.5f * value(i) + 0.5f * value(int64_t(i) + 1);
-  };
-  std::vector<glm::vec3> line(coarse.width);
-  for (uint32_t y = 0; y < fine.height; ++y) {
-    for (uint32_t x = 0; x < coarse.width; ++x)
-      line[x] = at(coarse.values.data() + x, y, coarse.height, coarse.width);
-    glm::vec3 *to = fine.row(y);
-    for (uint32_t x = 0; x < fine.width; ++x)
-      to[x] += sign * at(line.data(), x, coarse.width, 1);
-  }
-}
-
-// The residual R, the noise H, and the part of the noise that the denoiser takes, H - G.
-struct Level {
-  Colors residual, noise, taken;
-};
-
-// The neighbourhood of 9 x 9 in which a share is estimated, and the standard deviations by which its noise may exceed the mean.
-constexpr int kShareReach = 5;
-constexpr float kDoubt = 2.0f;
-
-// Returns the share of the residual that is not noise.
-Numbers shares(const Level &band) {
-  Numbers noise(band.residual.width, band.residual.height), squares = noise, power = noise;
-  for (size_t i = 0; i < noise.values.size(); ++i) {
-    noise.values[i] = glm::dot(band.noise.values[i], band.taken.values[i]);
-    squares.values[i] = noise.values[i] * noise.values[i];
-    power.values[i] = glm::dot(band.residual.values[i], band.residual.values[i]);
-  }
-  noise = convolved<float>(noise, tent(kShareReach));
-  power = convolved<float>(power, tent(kShareReach));
-  squares = convolved<float>(squares, tent(kShareReach, 2));
-  for (size_t i = 0; i < noise.values.size(); ++i) {
-    const float most = noise.values[i] + kDoubt * std::sqrt(squares.values[i]);
-    noise.values[i] = power.values[i] > 0.0f ? std::clamp(1.0f - most / power.values[i], 0.0f, 1.0f) : 0.0f;
-  }
-  return noise;
-}
-
-constexpr uint32_t kLevels = 6, kLeastSide = 8;
-
-// Replaces residual and taken by their shares, band by band. level: the number of coarser levels that may follow.
-void keep_shares(Level &level, uint32_t levels) {
-  const bool last = levels == 0 || std::min(level.residual.width, level.residual.height) < 2 * kLeastSide;
-  Level coarse{last ? Colors(0, 0) : reduced(level.residual), last ? Colors(0, 0) : reduced(level.noise),
-               last ? Colors(0, 0) : reduced(level.taken)};
-  if (!last) {
-    add_expanded(coarse.residual, -1.0f, level.residual);
-    add_expanded(coarse.noise, -1.0f, level.noise);
-    add_expanded(coarse.taken, -1.0f, level.taken);
-  }
-  const Numbers share = shares(level);
-  for (size_t i = 0; i < share.values.size(); ++i) {
-    level.residual.values[i] *= share.values[i];
-    level.taken.values[i] *= share.values[i];
-  }
-  if (last)
-    return;
-  keep_shares(coarse, levels - 1);
-  add_expanded(coarse.residual, 1.0f, level.residual);
-  add_expanded(coarse.taken, 1.0f, level.taken);
-}
 
 // Bound of relative colours, so that fourth powers fit into floats.
 constexpr float kMost = 1e8f;
@@ -159,7 +28,7 @@ public:
       const glm::dvec3 mean = 0.5 * (color(input.first, i) + color(input.second, i));
       sum += levels_[i] = std::abs(luminance(mean));
     }
-    dark = !(sum > 0.0);
+    const bool dark = !(sum > 0.0);
     for (double &level : levels_)
       level = dark ? 1.0 : level + 0.01 * sum / double(pixels);
     unit = dark ? 1.0 : sum / double(pixels);
@@ -170,7 +39,6 @@ public:
     return glm::clamp(glm::vec3(value / levels_[i]), glm::vec3(-kMost), glm::vec3(kMost));
   }
 
-  bool dark = false;
   double unit = 1.0; // mean luminance
 
 private:
@@ -326,7 +194,7 @@ DenoisedError combine_denoised(const DenoisedInput &input, double confidence, ui
   }
   // Add the share of the residual that is not noise, and the noise that comes with it.
   if (input.combines)
-    keep_shares(level, kLevels);
+    keep_shares(level);
   double sum = 0.0;
   std::vector<double> results(pixels); // luminances
   for (size_t i = 0; i < pixels; ++i) {

@@ -38,11 +38,8 @@ struct DenoisedError {
 // Frisvad, Jensen, "Progressive denoising of Monte Carlo rendered images", 2022, combine pictures by it). Means over
 // neighbourhoods make both certain; neither is negative.
 //
-// Z is D plus the share w of the residual R = Y - D in each band of a pyramid (Burt, Adelson, "The Laplacian pyramid as a
-// compact image code", 1983), since Y is more certain about large areas than about pixels. The error is least for w = 1 - <H, H
-// - G> / <R, R> with sums over a neighbourhood: the share of the residual that is not noise. Such a share is James' and Stein's
-// shrinkage of Y towards D. As the sums are uncertain, w takes the upper end of the noise's interval, two standard deviations:
-// a share that is too small costs less than one that is too large.
+// Z is D plus the share of the residual Y - D that is not noise (residual.h).
+//
 // The luminance of a pixel of Z lies within three standard errors of Y, or three times the noise of the pixel where that is
 // larger, as for a single bright sample. A pixel that Y knows, such as the black beside a lamp, keeps its value.
 DenoisedError combine_denoised(const DenoisedInput &input, double confidence, uint32_t block, float *picture,

@@ -234,7 +234,7 @@ void Film::keep_differences(const Sums &earlier, uint32_t level, Sums &later) co
       const glm::dvec3 apart = mean_color(of, earlier, level, pixel) - mean_color(of, later, level, pixel);
       for (uint32_t i = 0; i < 3; ++i)
         later.color_differences[size_t(pixel) * layout_.difference_channels + layout_.at[uint32_t(pass)] + i] =
-            float(apart[int(i)]);
+            nearest_float(apart[int(i)]);
     }
 }
 

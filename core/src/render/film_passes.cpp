@@ -194,7 +194,7 @@ void Film::read_halves(Pass pass, const Tile &tile, uint32_t pixel, float *targe
         [&](const Sums &sums) { return glm::make_vec3(sums.color_differences.data() + place); },
         [&](double share, const glm::dvec3 &apart) { sum += share * apart; });
   for (int i = 0; i < 3; ++i)
-    target[i] = float(sum[i]);
+    target[i] = nearest_float(sum[i]);
 }
 
 uint32_t Film::luminances(const Tile &tile, std::span<Luminance> out) const {
