@@ -83,26 +83,29 @@ Picture blurred(const Picture &picture) {
   return result;
 }
 
-// Returns the relative root mean square of the error of luminance.
+// Returns the relative root mean square of the error of luminance, where the three channels of the truth are equal.
 double true_error(const Noisy &noisy, const Picture &picture) {
-  double sum = 0.0;
+  double sum = 0.0, light = 0.0;
+  for (const float value : noisy.truth)
+    light += double(value);
   for (size_t pixel = 0; pixel < kWidth * kHeight; ++pixel) {
     const auto apart = [&](size_t c) { return double(picture[3 * pixel + c]) - double(noisy.truth[3 * pixel + c]); };
-    const double error = (0.2126 * apart(0) + 0.7152 * apart(1) + 0.0722 * apart(2)) / (level(pixel) + 0.0075);
+    const double unit = double(noisy.truth[3 * pixel]) + 0.01 * light / double(noisy.truth.size());
+    const double error = (0.2126 * apart(0) + 0.7152 * apart(1) + 0.0722 * apart(2)) / unit;
     sum += error * error;
   }
   return std::sqrt(sum / (kWidth * kHeight));
 }
 
 TEST(Denoised, ADenoiserThatDoesNothingChangesNothing) {
-  const Noisy noisy;
+  const Noisy noisy(1, 0.02);
   const Result result = combined(noisy, each([](size_t, double value) { return value; }));
   ASSERT_EQ(result.status, LANCER_OK);
   for (size_t i = 0; i < noisy.picture.size(); ++i)
     EXPECT_NEAR(result.picture[i], noisy.picture[i], 1e-6);
   // The error is that of the noise: the picture's 19 200 squares have a spread of sqrt(2 / 19200) = 1 %, the noise's too. It is
-  // relative to the lower one of a pixel and its surroundings: with noise of a fifth, by a mean of some 5 % too low.
-  EXPECT_NEAR(result.error.error, 1.05 * true_error(noisy, noisy.picture), 0.05 * result.error.error);
+  // relative to noisy pixels and to the lower one of a pixel and its surroundings: with noise of a fiftieth, 1 % too low.
+  EXPECT_NEAR(result.error.error, true_error(noisy, noisy.picture), 0.03 * result.error.error);
   EXPECT_EQ(result.error.moved, 0.0);
 }
 
@@ -151,6 +154,38 @@ TEST(Denoised, NoPixelLeavesThePictureByMoreThanItsNoise) {
     EXPECT_EQ(result.picture[i], 0.0f);
   EXPECT_GT(free.picture[6 * 5000], 0.05f);
   EXPECT_LT(result.picture[bright], 5.0f);
+}
+
+TEST(Denoised, TheErrorOfAThinLightIsRelativeToTheLight) {
+  // A light one pixel wide, 10 000 times as bright as its surroundings, with noise of a hundredth everywhere.
+  Noisy noisy(9, 0.01);
+  std::vector<float> errors(kWidth * kHeight);
+  for (size_t i = 0; i < noisy.picture.size(); ++i) {
+    const double light = (i / 3) % kWidth == 80 ? 100.0 : 0.01, before = double(noisy.truth[i]);
+    noisy.picture[i] = float(light * (1.0 + double(noisy.picture[i]) - before));
+    noisy.noise[i] = float(light * double(noisy.noise[i]));
+    noisy.truth[i] = float(light);
+    errors[i / 3] = float(0.01 * light);
+  }
+  const Result result = combined(noisy, each([](size_t, double value) { return value; }), 1, 1, errors.data());
+  const double real = true_error(noisy, result.picture);
+  // 19 200 squares have a spread of 1 %, those of the noise as well; the known part of the light is three errors, 3 %, lower.
+  EXPECT_NEAR(result.error.error, real, 0.05 * real);
+  EXPECT_LT(result.error.high, 2.0 * real);
+}
+
+TEST(Denoised, TheIntervalHoldsTheErrorOfASingleBrightPixel) {
+  // A sample of 200 that the denoiser leaves may be a small light or an error: relative to itself it is 1, to the truth 200.
+  Noisy noisy(11, 0.001);
+  for (size_t c = 0; c < 3; ++c)
+    noisy.picture[3 * (kWidth * 60 + 61) + c] += noisy.noise[3 * (kWidth * 60 + 61) + c] = 200.0f;
+  const std::vector<float> errors(kWidth * kHeight, 0.1f);
+  const Result result = combined(noisy, each([](size_t, double value) { return value; }), 1, 1, errors.data());
+  const double as_error = true_error(noisy, result.picture), as_light = std::sqrt(1.0 / (kWidth * kHeight));
+  EXPECT_GT(as_error, 1.0);
+  EXPECT_LT(result.error.low, as_light);
+  EXPECT_GT(result.error.high, as_error);
+  EXPECT_NEAR(result.error.error, std::sqrt(as_error * as_light), 0.3 * result.error.error);
 }
 
 TEST(Denoised, BarsHoldTheTruth) {

@@ -6,7 +6,6 @@
 #include "simd/vectors.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
@@ -51,6 +50,11 @@ struct Differences {
 
   Differences(uint32_t width, uint32_t height) : apart(width, height), noise(width, height), kept(width, height) {}
 
+  void multiply(size_t pixel, double factor) {
+    for (Numbers *numbers : {&apart, &noise, &kept})
+      numbers->values[pixel] = std::clamp(float(double(numbers->values[pixel]) * factor), -kMost, kMost);
+  }
+
   // Returns the means over blocks.
   Differences blocks(uint32_t side) const {
     Differences result((apart.width + side - 1) / side, (apart.height + side - 1) / side);
@@ -69,17 +73,20 @@ struct Differences {
   }
 };
 
-// Returns the squared error at each place, from means over neighbourhoods that reach so far.
-Numbers squared_errors(const Differences &of, int reach) {
+// Products of differences, whose means over neighbourhoods tell squared errors.
+struct Products {
+  Numbers apart, noise, common, kept;
+
+  explicit Products(const Differences &of)
+      : apart(times(of.apart, of.apart)), noise(times(of.noise, of.noise)), common(times(of.kept, of.noise)),
+        kept(times(of.kept, of.kept)) {}
+};
+
+// Returns the squared error at each place, from means over neighbourhoods that reach so far. step: of the kept places.
+template <uint32_t step = 1> Numbers squared_errors(const Products &of, int reach) {
   const std::vector<float> kernel = tent(reach);
-  const auto mean_of = [&](const Numbers &a, const Numbers &b) {
-    Numbers product(a.width, a.height);
-    for (size_t i = 0; i < product.values.size(); ++i)
-      product.values[i] = a.values[i] * b.values[i];
-    return convolved<float>(product, kernel);
-  };
-  const Numbers apart = mean_of(of.apart, of.apart), noise = mean_of(of.noise, of.noise);
-  const Numbers common = mean_of(of.kept, of.noise), kept = mean_of(of.kept, of.kept);
+  const Numbers apart = convolved<step>(of.apart, kernel), noise = convolved<step>(of.noise, kernel);
+  const Numbers common = convolved<step>(of.common, kernel), kept = convolved<step>(of.kept, kernel);
   Numbers result(apart.width, apart.height);
   for (size_t i = 0; i < result.values.size(); ++i) {
     // The product of kept noise and noise is the variance that is left: squares of the kept noise would include the difference
@@ -87,8 +94,9 @@ Numbers squared_errors(const Differences &of, int reach) {
     const float left = std::max(common.values[i], 0.0f);
     // The noise of Y - Z.
     const float taken = std::max(noise.values[i] - 2.0f * left + std::min(kept.values[i], left), 0.0f);
-    // Noise is told too large where the variance falls faster than 1 / N: Y - Z shows by how much at least.
-    const float told = apart.values[i] < taken ? apart.values[i] / taken : 1.0f;
+    // Noise is told too large where the variance falls faster than 1 / N: Y - Z shows by how much at least, as far as noise is
+    // taken.
+    const float told = apart.values[i] < taken ? (apart.values[i] + left) / (taken + left) : 1.0f;
     result.values[i] = std::max(apart.values[i] - taken, 0.0f) + told * left;
   }
   return result;
@@ -99,6 +107,17 @@ constexpr int kReach = 9, kFarReach = 33, kNearReach = 5;
 
 constexpr int kBlockReach = 3; // in blocks
 
+// Returns the factor by which Student's t exceeds the Gaussian number of a confidence, where a variance is the mean of squares
+// with the weights of a neighbourhood: the first terms of its series (Abramowitz, Stegun, 26.7.5).
+double few_squares(int reach, double confidence) {
+  double weights = 0.0;
+  const std::vector<float> kernel = tent(reach);
+  for (size_t i = 0; i < kernel.size(); ++i)
+    weights += (i > 0 ? 2.0 : 1.0) * double(kernel[i]) * double(kernel[i]);
+  const double squares = 1.0 / (weights * weights), z = gaussian_reach(confidence);
+  return 1.0 + (z * z + 1.0) / (4.0 * squares);
+}
+
 double root_mean(const Numbers &squares) {
   double sum = 0.0;
   for (const float square : squares.values)
@@ -106,48 +125,76 @@ double root_mean(const Numbers &squares) {
   return std::sqrt(sum / double(squares.values.size()));
 }
 
-// A neighbourhood that is small tells noise as error, since no squared error is negative; one that is large hides errors of few
-// pixels in the noise of the others. These are the two ends of the interval, widened by the spread of sums over pixels.
-DenoisedError error_of(const Differences &of, double confidence) {
-  const Numbers squares = squared_errors(of, kReach);
-  const double middle = root_mean(squares), far = root_mean(squared_errors(of, kFarReach)),
-               near = root_mean(squared_errors(of, kNearReach));
+// Returns the factor by which a root mean square over pixels may be wrong: its spread as for the error of a picture, with the
+// pixels of a neighbourhood as one.
+double uncertainty(const Numbers &squares, double pixels_of_one, double confidence) {
   double sum = 0.0, fourth = 0.0;
   for (const float square : squares.values) {
     sum += double(square);
     fourth += double(square) * double(square);
   }
-  // As for the error of a picture, with the pixels of a neighbourhood as one.
-  const double spread = sum > 0.0 ? 0.5 * std::sqrt(2.0 * fourth * kReach * kReach) / sum : 0.0;
-  const double reach = exp(gaussian_reach(confidence) * spread);
-  return {.error = middle, .low = std::min(far, middle) / reach, .high = std::max(near, middle) * reach};
+  const double spread = sum > 0.0 ? 0.5 * std::sqrt(2.0 * fourth * pixels_of_one) / sum : 0.0;
+  return exp(gaussian_reach(confidence) * spread);
+}
+
+// Relates differences to the luminances of the result, for the lower end of the error's interval, and to those without bright
+// pixels that the picture does not know, for its upper end: a bright pixel is a small light or an error, which is no measure of
+// itself. The error is between both. A neighbourhood that is small tells noise as error, since no squared error is negative;
+// one that is large hides errors of few pixels in the noise of the others: the one serves the upper end, the other the lower
+// end. Means over neighbourhoods differ little from pixel to pixel, so that some of them suffice.
+DenoisedError error_of(const Differences &to_result, const Differences &to_known, double confidence) {
+  constexpr uint32_t kStep = 2;
+  constexpr double kPixelsOfOne = double(kReach * kReach) / (kStep * kStep);
+  const Products low(to_result), high(to_known);
+  const Numbers low_squares = squared_errors<kStep>(low, kReach), high_squares = squared_errors<kStep>(high, kReach);
+  const double least = root_mean(low_squares), most = root_mean(high_squares);
+  const double far = root_mean(squared_errors<4 * kStep>(low, kFarReach)),
+               near = root_mean(squared_errors<kStep>(high, kNearReach));
+  return {.error = std::sqrt(least * most),
+          .low = std::min({far, least, most}) / uncertainty(low_squares, kPixelsOfOne, confidence),
+          .high = std::max({near, least, most}) * uncertainty(high_squares, kPixelsOfOne, confidence)};
 }
 
 // Standard errors of the picture within which the luminance of a pixel may change. Fewer would keep noise: of Gaussian errors,
 // 0.3 % exceed this number.
 constexpr double kMostErrors = 3.0;
 
-// Returns the share of the way from a pixel's luminance back to that of the picture, until they are close enough. All in one
-// unit.
+// Returns the largest difference of a pixel's luminance from that of the picture. All in one unit.
+double most_apart(double noise, double error) { return kMostErrors * std::max(std::abs(noise), error); }
+
+// Returns the share of the way from a pixel's luminance back to that of the picture, until they are close enough.
 double way_back(double apart, double noise, double error) {
-  const double allowed = kMostErrors * std::max(std::abs(noise), error);
+  const double allowed = most_apart(noise, error);
   return std::abs(apart) > allowed ? 1.0 - allowed / std::abs(apart) : 0.0;
 }
 
+float median(float a, float b, float c) { return std::max(std::min(a, b), std::min(std::max(a, b), c)); }
+
 // Returns the lower one of each number and the median of the 3 x 3 numbers around it: without single bright pixels, whose own
 // luminance would hide that they are wrong.
-std::vector<double> without_peaks(const std::vector<double> &values, uint32_t width, uint32_t height) {
-  std::vector<double> result(values.size());
-  std::array<double, 9> near;
-  for (uint32_t y = 0; y < height; ++y)
+Numbers without_peaks(const Numbers &values) {
+  const uint32_t width = values.width;
+  Numbers result(width, values.height);
+  // The three numbers of each column in order, with a column beyond each end of the row.
+  std::vector<float> least(width + 2), middle(width + 2), most(width + 2);
+  for (uint32_t y = 0; y < values.height; ++y) {
+    const float *here = values.row(y), *below = values.row(mirrored(int64_t(y) - 1, values.height)),
+                *above = values.row(mirrored(int64_t(y) + 1, values.height));
     for (uint32_t x = 0; x < width; ++x) {
-      size_t count = 0;
-      for (int64_t dy = -1; dy <= 1; ++dy)
-        for (int64_t dx = -1; dx <= 1; ++dx)
-          near[count++] = values[size_t(mirrored(y + dy, height)) * width + mirrored(x + dx, width)];
-      std::nth_element(near.begin(), near.begin() + 4, near.end());
-      result[size_t(y) * width + x] = std::min(values[size_t(y) * width + x], near[4]);
+      least[x + 1] = std::min(std::min(below[x], here[x]), above[x]);
+      middle[x + 1] = median(below[x], here[x], above[x]);
+      most[x + 1] = std::max(std::max(below[x], here[x]), above[x]);
     }
+    for (std::vector<float> *line : {&least, &middle, &most}) {
+      line->front() = (*line)[1];
+      line->back() = (*line)[width];
+    }
+    float *to = result.row(y);
+    for (uint32_t x = 0; x < width; ++x)
+      to[x] = std::min(here[x], median(std::max(std::max(least[x], least[x + 1]), least[x + 2]),
+                                       median(middle[x], middle[x + 1], middle[x + 2]),
+                                       std::min(std::min(most[x], most[x + 1]), most[x + 2])));
+  }
   return result;
 }
 
@@ -196,7 +243,7 @@ DenoisedError combine_denoised(const DenoisedInput &input, double confidence, ui
   if (input.combines)
     keep_shares(level);
   double sum = 0.0;
-  std::vector<double> results(pixels); // luminances
+  Numbers results(width, height); // luminances
   for (size_t i = 0; i < pixels; ++i) {
     const glm::vec3 kept = input.combines ? level.residual.values[i] : glm::vec3(0.0f);
     glm::dvec3 result = denoised(i) + glm::dvec3(kept) * scale.of(i);
@@ -214,28 +261,33 @@ DenoisedError combine_denoised(const DenoisedInput &input, double confidence, ui
     }
     for (int c = 0; c < 3; ++c)
       picture[3 * i + size_t(c)] = nearest_float(result)[c];
-    sum += results[i] = std::abs(luminance(result));
+    results.values[i] = std::abs(luminance(nearest_float(result)));
+    sum += double(results.values[i]);
   }
-  // Relate differences to the result: a wrong denoised pixel is no measure of its own error.
-  results = without_peaks(results, width, height);
-  for (size_t i = 0; i < pixels && sum > 0.0; ++i) {
-    const double factor = scale.of(i) / (results[i] + 0.01 * sum / double(pixels));
-    for (Numbers *values : {&of.apart, &of.noise, &of.kept})
-      values->values[i] = std::clamp(float(double(values->values[i]) * factor), -kMost, kMost);
+  // Express differences in mean luminances, and find the luminances that the picture knows.
+  Numbers known = without_peaks(results);
+  for (size_t i = 0; i < pixels; ++i) {
+    if (input.errors) {
+      const double allowed = most_apart(luminance(Scale::color(input.noise, i)), double(input.errors[i]));
+      known.values[i] = std::max(known.values[i], float(double(results.values[i]) - allowed));
+    }
+    of.multiply(i, scale.of(i) / scale.unit);
   }
-  const auto absolute = [&](size_t i) {
-    return (sum > 0.0 ? results[i] + 0.01 * sum / double(pixels) : scale.of(i)) / scale.unit;
+  const auto relative_to = [&](const Numbers &luminances) {
+    Differences result = of;
+    for (size_t i = 0; i < pixels && sum > 0.0; ++i)
+      result.multiply(i, scale.unit / (double(luminances.values[i]) + 0.01 * sum / double(pixels)));
+    return result;
   };
   // Estimate the error of the result.
-  DenoisedError error = error_of(of, confidence);
+  DenoisedError error = error_of(relative_to(results), relative_to(known), confidence);
   error.moved = moved;
-  for (size_t i = 0; i < pixels; ++i)
-    for (Numbers *values : {&of.apart, &of.noise, &of.kept})
-      values->values[i] = std::clamp(float(double(values->values[i]) * absolute(i)), -kMost, kMost);
-  const Numbers squares = block > 1 ? squared_errors(of.blocks(block), kBlockReach) : squared_errors(of, kReach);
+  const int reach = block > 1 ? kBlockReach : kReach;
+  const Numbers squares = squared_errors(Products(block > 1 ? of.blocks(block) : of), reach);
+  const double widened = scale.unit * few_squares(reach, confidence);
   bars.resize(squares.values.size());
   for (size_t i = 0; i < bars.size(); ++i)
-    bars[i] = nearest_float(scale.unit * std::sqrt(double(squares.values[i])));
+    bars[i] = nearest_float(widened * std::sqrt(double(squares.values[i])));
   return error;
 }
 

@@ -29,8 +29,9 @@ inline uint32_t mirrored(int64_t i, uint32_t count) {
   return uint32_t(i < count ? i : period - 1 - i);
 }
 
-// Returns the convolution with a symmetric kernel in both directions; kernel: from its middle on. step: of the kept pixels.
-template <class Value> Grid<Value> convolved(const Grid<Value> &grid, std::span<const float> kernel, uint32_t step = 1) {
+// Returns the convolution with a symmetric kernel in both directions; kernel: from its middle on. step: of the kept pixels. It
+// is a constant because the compiler joins loads of neighbours for a step of 1.
+template <uint32_t step = 1, class Value> Grid<Value> convolved(const Grid<Value> &grid, std::span<const float> kernel) {
   const auto reach = int64_t(kernel.size()) - 1;
   const uint32_t width = (grid.width + step - 1) / step, height = (grid.height + step - 1) / step;
   Grid<Value> rows(grid.width, height), result(width, height);
@@ -55,6 +56,13 @@ template <class Value> Grid<Value> convolved(const Grid<Value> &grid, std::span<
     }
   }
   return result;
+}
+
+inline Numbers times(const Numbers &a, const Numbers &b) {
+  Numbers product(a.width, a.height);
+  for (size_t i = 0; i < product.values.size(); ++i)
+    product.values[i] = a.values[i] * b.values[i];
+  return product;
 }
 
 // Returns the kernel of a neighbourhood whose weights fall to 0 at this distance, each raised to a power.

@@ -11,7 +11,7 @@ namespace {
 // The kernel of the pyramid.
 constexpr std::array<float, 3> kSmall = {6.0f / 16.0f, 4.0f / 16.0f, 1.0f / 16.0f};
 
-Colors reduced(const Colors &fine) { return convolved<glm::vec3>(fine, kSmall, 2); }
+Colors reduced(const Colors &fine) { return convolved<2>(fine, kSmall); }
 
 // Adds a coarser level times a sign to a finer one, interpolated with the pyramid's kernel.
 void add_expanded(const Colors &coarse, float sign, Colors &fine) {
@@ -43,9 +43,9 @@ Numbers shares(const Level &band) {
     squares.values[i] = noise.values[i] * noise.values[i];
     power.values[i] = glm::dot(band.residual.values[i], band.residual.values[i]);
   }
-  noise = convolved<float>(noise, tent(kShareReach));
-  power = convolved<float>(power, tent(kShareReach));
-  squares = convolved<float>(squares, tent(kShareReach, 2));
+  noise = convolved(noise, tent(kShareReach));
+  power = convolved(power, tent(kShareReach));
+  squares = convolved(squares, tent(kShareReach, 2));
   for (size_t i = 0; i < noise.values.size(); ++i) {
     const float most = noise.values[i] + kDoubt * std::sqrt(squares.values[i]);
     noise.values[i] = power.values[i] > 0.0f ? std::clamp(1.0f - most / power.values[i], 0.0f, 1.0f) : 0.0f;
