@@ -182,7 +182,9 @@ class Schedule:
         """Return the samples of the next range for all pixels."""
         count = max(1, self.samples)
         if not self.settings.refines and self._seconds_per_sample > 0.0:
-            count = min(count, max(1, int(self.longest / self._seconds_per_sample)))
+            # Multiples of an eighth of the largest power of two keep the film small.
+            unit = max(1, (1 << self.samples.bit_length()) // 16)
+            count = min(count, max(1, int(self.longest / self._seconds_per_sample / unit)) * unit)
         return min(count, self.settings.samples - self.samples)
 
     def _finished(self, progress):

@@ -37,8 +37,9 @@ class GivenSession:
         return False
 
 
-def drive(session, most=100):
+def drive(session, most=100, longest=1.0):
     schedule = Schedule(session)
+    schedule.longest = longest
     while schedule.start():
         schedule.wait(0.0)
         assert len(session.ranges) < most
@@ -62,6 +63,14 @@ def test_ranges_follow_one_another_up_to_the_samples(samples):
         sum(count for _, count in session.ranges[:n]) for n in range(len(session.ranges))
     ]
     assert sum(count for _, count in session.ranges) == samples
+
+
+def test_slow_ranges_leave_at_most_four_sums_waiting():
+    """A film keeps one sum for each set bit of the samples; lancer_session_create checks the memory of four."""
+    session = GivenSession(samples=1000)
+    assert drive(session, longest=0.0).reason is SAMPLES
+    ends = [first + count for first, count in session.ranges]
+    assert len(ends) > 40 and max(end.bit_count() for end in ends[:-1]) == 4 and ends[-1] == 1000
 
 
 def test_what_a_target_still_needs_grows_with_the_square_of_the_error():

@@ -879,7 +879,8 @@ LANCER_API lancer_status lancer_session_create(lancer_scene scene, const lancer_
                                                lancer_session *session);
 LANCER_API lancer_status lancer_session_destroy(lancer_session session);
 /* Starts the samples first ... first + count - 1 of every pixel. first must be the end of the range rendered before (0 at
- * the start). The bits do not depend on how a range is split, the number of threads or the tile size. */
+ * the start). The bits do not depend on how a range is split, the number of threads or the tile size. Memory does: ranges
+ * shorter than an eighth of the samples before them need more of it than lancer_session_create checks. */
 LANCER_API lancer_status lancer_session_render(lancer_session session, uint32_t first, uint32_t count);
 /* Waits at most this time. LANCER_OK: the range is done. progress may be NULL. */
 LANCER_API lancer_status lancer_session_wait(lancer_session session, uint32_t milliseconds, lancer_progress *progress);

@@ -153,11 +153,17 @@ TEST(Session, TwoRunAtOnce) {
 TEST(Session, RefusesWhatNoFilmCanHave) {
   const lancer_scene scene = make_scene();
   lancer_camera camera = make_camera();
-  const lancer_settings settings = make_settings();
+  lancer_settings settings = make_settings();
+  settings.passes = 1u << LANCER_PASS_COMBINED;
   lancer_session session = 0;
   camera.width = camera.height = camera.region_width = camera.region_height = 4000000000u;
   EXPECT_EQ(lancer_session_create(scene, &camera, &settings, &session), LANCER_ERROR_MEMORY);
   EXPECT_NE(std::string(lancer_last_error()).find("4000000000"), std::string::npos);
+  EXPECT_EQ(std::string(lancer_last_error()).find("denoising"), std::string::npos);
+  lancer_settings denoised = settings;
+  denoised.passes |= 1u << LANCER_PASS_ALBEDO_HALVES;
+  EXPECT_EQ(lancer_session_create(scene, &camera, &denoised, &session), LANCER_ERROR_MEMORY);
+  EXPECT_NE(std::string(lancer_last_error()).find("denoising"), std::string::npos);
   camera.region_width = 0;
   EXPECT_EQ(lancer_session_create(scene, &camera, &settings, &session), LANCER_ERROR_ARGUMENT);
   EXPECT_EQ(lancer_session_create(scene, nullptr, &settings, &session), LANCER_ERROR_ARGUMENT);

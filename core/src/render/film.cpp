@@ -86,12 +86,10 @@ Film::Film(uint32_t width, uint32_t height, uint32_t tile_size, uint32_t passes,
   }
 }
 
-double Film::bytes_needed(double width, double height, uint32_t passes, uint32_t samples) {
+double Film::bytes_needed(double width, double height, uint32_t passes, uint32_t sums) {
   const Layout layout(passes);
-  // The largest number of waiting sums occurs at a count with all bits set.
-  const int levels = std::bit_width(uint64_t(samples) + 1) - 1;
   return width * height *
-         ((double(layout.summed_channels) * sizeof(double) + double(1 + layout.difference_channels) * sizeof(float)) * levels +
+         ((double(layout.summed_channels) * sizeof(double) + double(1 + layout.difference_channels) * sizeof(float)) * sums +
           double(layout.first_channels + 1) * sizeof(float));
 }
 

@@ -49,8 +49,8 @@ public:
   // divided. halves: every square becomes two tiles of a chessboard; tile 2 i + 1 is the other half of tile 2 i.
   Film(uint32_t width, uint32_t height, uint32_t tile_size, uint32_t passes, bool halves = false);
 
-  // Returns the largest memory, in bytes, that a film of this size uses while it receives that number of samples per pixel.
-  static double bytes_needed(double width, double height, uint32_t passes, uint32_t samples);
+  // Returns the memory, in bytes, of a film of this size where that number of sums waits in each pixel.
+  static double bytes_needed(double width, double height, uint32_t passes, uint32_t sums);
 
   // A complete subtree: [pixel][summed channel]; [pixel] the difference of its halves' mean luminances, 0 for a leaf; for
   // passes of halves the same of their mean colours, [pixel][channel].

@@ -24,16 +24,27 @@ Camera normalised(Camera camera, const Normalisation &normalisation) {
   return camera;
 }
 
-// A film that is refined doubles the samples of its tiles: beside the few tiles in work, each has one sum, or two.
-constexpr uint32_t kSamplesOfTwoSums = 3;
+// Returns the number of sums that wait at most in each pixel, beside the few tiles in work. A film that is refined doubles the
+// samples of its tiles: each has one sum, or two. A film whose samples are multiples of an eighth of their largest power of two
+// has at most four, until the last range.
+int waiting_sums(const IntegratorSettings &settings, uint32_t samples) {
+  const int all = std::bit_width(uint64_t(samples) + 1) - 1;
+  return settings.refines ? std::min(all, 2) : std::max(std::min(all, 4), std::popcount(samples));
+}
 
 // Throws Error for a film that exceeds the machine's memory.
 const Camera &checked_memory(const Camera &camera, const IntegratorSettings &settings) {
+  constexpr uint32_t kForDenoising = bit(Pass::Halves) | bit(Pass::AlbedoHalves) | bit(Pass::NormalHalves);
   const uint32_t samples = std::max(settings.samples, 1u);
-  check_memory("film: " + std::to_string(camera.region_width) + " x " + std::to_string(camera.region_height) + " pixels, " +
-                   std::to_string(samples) + " samples",
-               Film::bytes_needed(camera.region_width, camera.region_height, settings.passes,
-                                  settings.refines ? std::min(samples, kSamplesOfTwoSums) : samples));
+  const auto bytes = [&](uint32_t passes) {
+    return Film::bytes_needed(camera.region_width, camera.region_height, passes, uint32_t(waiting_sums(settings, samples)));
+  };
+  std::string what = "film: " + std::to_string(camera.region_width) + " x " + std::to_string(camera.region_height) +
+                     " pixels, " + std::to_string(samples) + " samples";
+  if (settings.passes & kForDenoising)
+    what += " and passes for denoising (without these " +
+            std::to_string(uint64_t(bytes(settings.passes & ~kForDenoising) / 1e6)) + " MB)";
+  check_memory(what, bytes(settings.passes));
   return camera;
 }
 
