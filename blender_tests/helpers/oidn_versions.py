@@ -5,8 +5,6 @@ import importlib.util
 import os
 import subprocess
 
-from conftest import HERE
-
 
 def newer():
     """Return the path of version 2."""
@@ -20,6 +18,6 @@ def newer():
 def older(folder):
     """Build the wrapper in folder; return (path, environment variables that it needs)."""
     path = os.path.join(str(folder), "libOpenImageDenoise.so.1.4.3")
-    source = os.path.join(HERE, "helpers", "oidn_of_version_1.cpp")
+    source = os.path.join(os.path.dirname(__file__), "oidn_of_version_1.cpp")
     subprocess.run([os.environ.get("CXX", "g++"), "-shared", "-fPIC", "-o", path, source, "-ldl"], check=True)
     return path, {"LANCER_TEST_OIDN": newer()}

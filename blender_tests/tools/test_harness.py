@@ -1,6 +1,8 @@
 """Code that the measuring programs share: estimates, comparison of pictures, turns, kept results, options, pages."""
 
 import io
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -8,7 +10,7 @@ import pytest
 from tools.harness import estimates, page, pictures, turns, workers
 from tools.harness.errors import Reference, luminance
 from tools.harness.kept import kept, kept_picture
-from tools.harness.places import README, TABLES
+from tools.harness.places import README, ROOT, TABLES
 from tools.harness.terminal import Progress, wanted
 
 
@@ -212,3 +214,23 @@ def test_the_project_has_a_place_for_each_table(path, name, program):
     text = path.read_text(encoding="utf-8")
     begin, end = page.marks(name, program)
     assert text.count(begin) == text.count(end) == 1 and text.index(begin) < text.index(end)
+
+
+# Imports modules in a Python without the packages of pyproject's group test.
+WITHOUT_TESTS = """
+import importlib, runpy, sys
+sys.modules.update(dict.fromkeys(("pytest", "scipy", "mpmath")))
+runpy.run_path(sys.argv[1])
+for name in sys.argv[2:]:
+    importlib.import_module(name)
+"""
+
+
+def test_measuring_programs_need_no_package_of_the_tests():
+    """make installs the group run for these programs, and the group bench for some."""
+    tools = ROOT / "blender_tests" / "tools"
+    programs = ("accuracy", "bench", "corpus", "differ", "features", "harness", "parity", "pilot", "tradeoff")
+    files = [path for program in programs for path in sorted((tools / program).glob("*.py"))]
+    names = [".".join(path.relative_to(tools.parent).with_suffix("").parts) for path in files]
+    command = [sys.executable, "-c", WITHOUT_TESTS, str(workers.START), *names]
+    subprocess.run(command, check=True, timeout=120)
