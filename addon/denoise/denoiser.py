@@ -121,28 +121,40 @@ class _Exposure:
     """
 
     def __init__(self, color):
-        peak = color.max(axis=2)
-        exponents = np.sort(np.frexp(peak[peak > 0.0])[1])
+        peak = _peak(color)
+        exponents = np.frexp(peak[peak > 0.0])[1]
         self.lit = exponents.size > 0
         if self.lit:
             # Scale by the median exponent of lit pixels: a power of two is exact, and the median ignores single bright pixels.
-            self._exponent = int(exponents[exponents.size // 2])
+            middle = exponents.size // 2
+            self._exponent = int(np.partition(exponents, middle)[middle])
 
     def scaled(self, color):
-        """Return the scaled colours, and for each pixel the factor by which it was too bright."""
+        """Return the scaled colours, and for each pixel the factor by which it was too bright; None: none was."""
+        peak = _peak(color)
+        brightest = np.ldexp(_BRIGHTEST, self._exponent)
+        if float(peak.max()) <= brightest:
+            return np.ldexp(color, -self._exponent), None
         # Clamp pixels that are too bright, but keep their hue.
-        excess = np.maximum(color.max(axis=2).astype(np.float64) / np.ldexp(_BRIGHTEST, self._exponent), 1.0)
+        excess = np.maximum(peak.astype(np.float64) / brightest, 1.0)
         return np.ldexp(color / excess[..., None], -self._exponent).astype(np.float32), excess
 
     def restored(self, color, excess):
-        # Restore the brightness of visible lamps; single bright pixels are noise that the network has removed.
-        seen = color.max(axis=2) > 0.5 * _BRIGHTEST
-        excess = np.where(seen, excess, 1.0)[..., None]
-        return np.minimum(np.ldexp(color * excess, self._exponent), np.finfo(np.float32).max).astype(np.float32)
+        if excess is not None:
+            # Restore the brightness of visible lamps; single bright pixels are noise that the network has removed.
+            seen = _peak(color) > 0.5 * _BRIGHTEST
+            color = color * np.where(seen, excess, 1.0)[..., None]
+        with np.errstate(over="ignore"):
+            return np.minimum(np.ldexp(color, self._exponent), np.finfo(np.float32).max).astype(np.float32, copy=False)
+
+
+def _peak(color):
+    """Return the largest channel of each pixel, (height, width)."""
+    return np.maximum(np.maximum(color[..., 0], color[..., 1]), color[..., 2])
 
 
 def _checked(color, guides, noise):
-    """Return writable copies of the colours, and of guides and noise by their names in the library; raise LancerError if
+    """Return a writable copy of the colours, and guides and noise by their names in the library; raise LancerError if
     invalid."""
     shape = np.shape(color)
     if len(shape) != 3 or shape[2] not in (3, 4) or 0 in shape:
@@ -157,7 +169,7 @@ def _checked(color, guides, noise):
                 continue
             if np.shape(array) != (*shape[:2], 3):
                 raise LancerError(f"denoising: {kind}{name} of shape {np.shape(array)} beside colours of shape {shape}")
-            into[name] = np.array(array, np.float32, order="C")
+            into[name] = np.ascontiguousarray(array, np.float32)
     image = np.array(color, np.float32, order="C")
     named = {"colour": image, **images, **{f"noise of {name}": array for name, array in noises.items()}}
     for name, array in named.items():
