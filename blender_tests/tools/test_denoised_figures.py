@@ -38,3 +38,12 @@ def test_the_noise_of_references_cancels():
     assert Displayed.of(halves).square(truth) < 0.02 * noise
     apart = displayed(truth + 0.1) - displayed(truth)
     assert Displayed.of(halves).square(truth + 0.1) == pytest.approx(float(np.mean(apart**2)), rel=0.04)
+
+
+def test_relative_errors_are_in_the_unit_of_the_told_ones():
+    """The difference over the luminance plus 1 % of its mean. Noise of a hundredth in the references shifts it by 0.1 %."""
+    generator = np.random.default_rng(6)
+    truth = np.full((200, 200, 3), 0.5)
+    reference = Displayed.of([truth + generator.normal(0.0, 0.005, truth.shape) for _ in range(2)])
+    assert reference.relative(truth + 0.05) == pytest.approx(0.05 / 0.505, rel=0.004)
+    assert reference.relative(truth) < 0.002

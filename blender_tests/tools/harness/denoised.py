@@ -11,17 +11,22 @@ REACHED = 128
 
 
 def measured(points, reference):
-    """Return a list of {"samples", "seconds", "square", "flip"}: medians over seeds. points: curves, one of each seed."""
+    """Return a list of {"samples", "seconds", "square", "flip", "error"}: medians over seeds.
+
+    points: curves, one of each seed.
+    """
     rows = []
     for of_seeds in zip(*points, strict=True):
         squares = [reference.square(picture) for *_, picture in of_seeds]
         flips = [reference.flip(picture) for *_, picture in of_seeds]
+        errors = [reference.relative(picture) for *_, picture in of_seeds]
         rows.append(
             {
                 "samples": of_seeds[0][0],
                 "seconds": statistics.median(seconds for _, seconds, _ in of_seeds),
                 "square": statistics.median(squares),
                 "flip": statistics.median(flips),
+                "error": statistics.median(errors),
             }
         )
     return rows

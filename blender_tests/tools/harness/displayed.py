@@ -1,8 +1,10 @@
-"""Errors of pictures as a screen shows them, against a converged picture of the same engine: squared error and FLIP."""
+"""Errors of pictures against a converged one of the same engine: as a screen shows them, squared error and FLIP; relative."""
 
 from dataclasses import dataclass
 
 import numpy as np
+
+from .errors import level_of, luminance
 
 
 def displayed(picture):
@@ -13,14 +15,23 @@ def displayed(picture):
 
 @dataclass(frozen=True)
 class Displayed:
-    """Two independent converged pictures of equal weight, as displayed."""
+    """Two independent converged pictures of equal weight, as displayed, and their luminances."""
 
     first: np.ndarray
     second: np.ndarray
+    luminances: tuple
 
     @classmethod
     def of(cls, halves):
-        return cls(*(displayed(half) for half in halves))
+        first, second = halves
+        return cls(displayed(first), displayed(second), (luminance(first), luminance(second)))
+
+    def relative(self, picture):
+        """Return the error in the unit of lancer_error, in which Lancer tells it."""
+        first, second = self.luminances
+        shown = luminance(picture)
+        square = np.mean((shown - first) * (shown - second) / level_of(0.5 * (first + second)) ** 2)
+        return float(np.sqrt(max(0.0, square)))
 
     def square(self, picture):
         """Return the mean squared error; the noise of the two references is independent, so their own error cancels."""

@@ -149,42 +149,65 @@ def _page(figures, folder):
         parts.append(element("table", element("tr", element("td", lines(images, "</td><td>")))))
         rows = [
             [engine, str(row["samples"]), f"{row['seconds']:.2f}", f"{row['square']:.3g}", f"{row['flip']:.4f}"]
+            + [f"{100 * row['error']:.2g} %"]
             for engine, curve in one["curves"].items()
             for row in curve
         ]
-        parts.append(table(["", "samples", "seconds", "squared error", "FLIP"], rows))
+        parts.append(table(["", "samples", "seconds", "squared error", "FLIP", "relative error"], rows))
         told = [["told by Lancer", str(n), *(f"{100 * value:.2g} %" for value in values)] for n, *values in one["told"]]
         parts.append(table(["", "samples", "denoised error", "from", "to"], told))
     write(folder, "denoised", figures, f"Denoised pictures at {figures['commit']}", parts)
 
 
 def chart(figures, folder):
-    """Draw FLIP against seconds of the first four scenes."""
+    """Draw FLIP and relative error against seconds of the first four scenes, with the error that Lancer tells."""
     import matplotlib
 
     matplotlib.use("Agg")
-    from matplotlib import pyplot, ticker
+    from matplotlib import pyplot
 
     names = list(figures["scenes"])[:4]
-    figure, axes = pyplot.subplots(1, len(names), figsize=(2.9 * len(names), 3.2), layout="constrained", squeeze=False)
-    for axis, name in zip(axes[0], names, strict=True):
+    size = {"figsize": (2.9 * len(names), 5.4), "layout": "constrained", "squeeze": False, "sharex": "col"}
+    figure, axes = pyplot.subplots(2, len(names), **size)
+    for column, name in enumerate(names):
         one = figures["scenes"][name]
-        for engine, color, label in (("LANCER", "#1b6ca8", "Lancer"), ("CYCLES", "#d9822b", "Cycles")):
-            rows = one["curves"][engine]
-            axis.plot([r["seconds"] for r in rows], [r["flip"] for r in rows], "o-", color=color, ms=3, lw=1.5, label=label)
-        axis.set_xscale("log")
-        axis.set_yscale("log")
-        axis.set_title(name, loc="left", fontsize=10)
-        axis.xaxis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value:g} s"))
-        axis.yaxis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{100 * value:g} %"))
-        axis.yaxis.set_minor_formatter(ticker.NullFormatter())
-        axis.xaxis.set_minor_formatter(ticker.NullFormatter())
-        axis.yaxis.set_major_locator(ticker.LogLocator(subs=(1.0, 2.0, 5.0)))
-        axis.grid(which="major", lw=0.4, color="#dddddd")
-        axis.tick_params(labelsize=7)
-    axes[0][0].legend(fontsize=8, frameon=False)
+        for line, kind in enumerate(("flip", "error")):
+            axis = axes[line][column]
+            for engine, color, label in (("CYCLES", "#d9822b", "Cycles"), ("LANCER", "#1b6ca8", "Lancer")):
+                rows = one["curves"][engine]
+                axis.plot([r["seconds"] for r in rows], [r[kind] for r in rows], "o-", color=color, ms=3, lw=1.5, label=label)
+            _style(axis)
+        _draw_told(axes[1][column], one)
+        axes[0][column].set_title(name, loc="left", fontsize=10)
+    for axis, label in zip(axes[:, 0], ("FLIP", "relative error"), strict=True):
+        axis.set_ylabel(label, fontsize=8)
+        axis.legend(fontsize=8, frameon=False)
     for kind in ("svg", "png"):
         figure.savefig(
             folder / f"denoised.{kind}", dpi=110, facecolor="white", metadata={"Date": None} if kind == "svg" else None
         )
     pyplot.close(figure)
+
+
+def _draw_told(axis, one):
+    """Draw the told errors with their intervals, at the seconds of Lancer's pictures."""
+    seconds = {row["samples"]: row["seconds"] for row in one["curves"]["LANCER"]}
+    told = [(seconds[count], error, error - low, high - error) for count, error, low, high in one["told"]]
+    if told:
+        places, errors, below, above = zip(*told, strict=True)
+        style = {"fmt": "_", "color": "#7a3b8f", "lw": 1.0, "ms": 5}
+        axis.errorbar(places, errors, yerr=(below, above), label="told by Lancer", **style)
+
+
+def _style(axis):
+    from matplotlib import ticker
+
+    axis.set_xscale("log")
+    axis.set_yscale("log")
+    axis.xaxis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value:g} s"))
+    axis.yaxis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{100 * value:g} %"))
+    axis.yaxis.set_minor_formatter(ticker.NullFormatter())
+    axis.xaxis.set_minor_formatter(ticker.NullFormatter())
+    axis.yaxis.set_major_locator(ticker.LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.grid(which="major", lw=0.4, color="#dddddd")
+    axis.tick_params(labelsize=7)
