@@ -7,8 +7,10 @@ from typing import NamedTuple
 
 # Qualities of the library from version 2 on.
 FAST, BALANCED, HIGH = 4, 5, 6
-# Microseconds per pixel of one run, and of a sample of a usual scene, measured with two threads: only the ratios matter.
-_RUN = {FAST: 0.8, BALANCED: 2.0, HIGH: 5.4}
+# Microseconds per pixel of one run, of the combination with the samples and all else, and of a sample of a usual scene, measured
+# with two threads and AVX2: only the ratios matter. With AVX-512 runs take two thirds of their time.
+_RUN = {FAST: 1.15, BALANCED: 3.0, HIGH: 8.2}
+_AROUND = 1.0
 _SAMPLE = 1.25
 # Share of the time for samples that denoising may take, and the seconds that it may take in any case.
 _SHARE, _SECONDS = 0.1, 2.0
@@ -21,7 +23,7 @@ class Plan(NamedTuple):
     @property
     def cost(self):
         """Microseconds per pixel."""
-        return 2.0 * _RUN[self.quality] + (2.0 * _RUN[BALANCED] if self.prefilters else 0.0)
+        return 2.0 * _RUN[self.quality] + _AROUND + (2.0 * _RUN[BALANCED] if self.prefilters else 0.0)
 
 
 # In order of quality. Squared errors over twenty scenes of 4 to 64 samples, relative to the first: 1; 1.16; 1.25; 1.4.

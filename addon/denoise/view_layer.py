@@ -5,6 +5,8 @@ import functools
 import math
 import time
 
+import numpy as np
+
 from ..bindings.abi import LancerError
 from ..bindings.enums import Pass
 from ..bindings.session import Cancelled
@@ -16,7 +18,7 @@ DECLARATION = "denoised: a guess that can remove details; its own error is told 
 AS_IT_IS = "the picture is shown with its noise"
 # Passes of the picture's own samples: guides of the network as in Cycles by default, and the noise of each.
 PASSES = (Pass.ALBEDO, Pass.DENOISING_NORMAL, Pass.HALVES, Pass.ALBEDO_HALVES, Pass.NORMAL_HALVES)
-_NOISE = (Pass.HALVES, Pass.ALBEDO_HALVES, Pass.NORMAL_HALVES, Pass.ERROR)
+_NOISE = (Pass.HALVES, Pass.ALBEDO_HALVES, Pass.NORMAL_HALVES)
 
 
 def wanted(scene, view_layer):
@@ -56,9 +58,10 @@ def inputs(session):
     """Return the arguments of denoiser.denoise for a session's picture."""
     pixels = session.camera.region_width * session.camera.region_height
     samples = session.statistics().samples / pixels
-    noise = None
-    if session.error().known:
-        noise = denoiser.Noise(*(session.read(source) for source in _NOISE))
+    noise, errors = None, session.read(Pass.ERROR)
+    # Pixels of fewer than two samples have no error.
+    if np.isfinite(errors).all():
+        noise = denoiser.Noise(*(session.read(source) for source in _NOISE), errors)
     return {
         "color": session.read(Pass.COMBINED),
         "albedo": session.read(Pass.ALBEDO),

@@ -241,8 +241,8 @@ def test_noise_is_that_of_each_guide(library, pictures):
 def test_large_pictures_of_few_samples_get_a_fast_network():
     small, large = 240 * 180, 1920 * 1080
     assert plan.plan(small, 1) == plan.plan(large, 1024) == plan.PLANS[0]
-    chosen = [plan.plan(large, samples) for samples in (1, 16, 32, 64, 128)]
+    chosen = [plan.plan(large, samples) for samples in (1, 16, 32, 64, 128, 256)]
     assert chosen == sorted(chosen, key=plan.PLANS.index, reverse=True) and chosen[0] == plan.FASTEST
     # Denoising takes at most a tenth of the time of samples, where the fastest network does.
-    for samples in (16, 32, 64, 128):
+    for samples in (32, 64, 128):
         assert plan.plan(large, samples).cost <= 0.1 * 1.25 * samples
