@@ -24,8 +24,8 @@ def combine(noisy, noise, first, second, step, errors=None, *, combines=True, co
     """Return the Combined of a picture, linear (height, width, 3) float32 like the other three.
 
     noise: Pass.HALVES, from at least two samples; first, second: a denoiser's results for noisy + step noise and noisy - step
-    noise. errors: Pass.ERROR, (height, width, 1), beyond three times of which no pixel may leave noisy. combines: False returns
-    the mean of first and second. block: side of the blocks of bars, in pixels. Raise LancerError for other shapes and for
+    noise. errors: Pass.ERROR, (height, width, 1), which tells small lights from bright errors. combines: False returns the mean
+    of first and second. block: side of the blocks of bars, in pixels. Raise LancerError for other shapes and for
     values that are not finite.
     """
     library = library or abi.load_library()
@@ -38,10 +38,10 @@ def combine(noisy, noise, first, second, step, errors=None, *, combines=True, co
     bars = np.empty(((height + block - 1) // block, (width + block - 1) // block), np.float32)
     error = abi.DenoisedError()
     pointers = [array.ctypes.data for array in inputs]
-    limits = None if errors is None else np.ascontiguousarray(errors, np.float32)
-    if limits is not None and limits.size != height * width:
-        raise abi.LancerError(f"combine: errors of shape {limits.shape} beside pictures of shape {inputs[0].shape}")
-    pointers.insert(2, None if limits is None else limits.ctypes.data)
+    known = None if errors is None else np.ascontiguousarray(errors, np.float32)
+    if known is not None and known.size != height * width:
+        raise abi.LancerError(f"combine: errors of shape {known.shape} beside pictures of shape {inputs[0].shape}")
+    pointers.insert(2, None if known is None else known.ctypes.data)
     outputs = picture.ctypes.data, bars.ctypes.data, ctypes.byref(error)
     settings = float(step), int(combines), float(confidence), int(block)
     abi.check(library.lancer_combine_denoised(width, height, *pointers, *settings, *outputs), library)

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 # Qualities of the library from version 2 on.
 FAST, BALANCED, HIGH = 4, 5, 6
-# Microseconds per pixel of one run, of the combination with the samples and all else, and of a sample of a usual scene, measured
-# with two threads and AVX2: only the ratios matter. With AVX-512 runs take two thirds of their time.
+# Microseconds per pixel of one run, of the combination with the samples and all else, and of a sample of a usual scene,
+# measured with two threads and AVX2: only the ratios matter. With AVX-512 runs take two thirds of their time.
 _RUN = {FAST: 1.15, BALANCED: 3.0, HIGH: 8.2}
 _AROUND = 1.0
 _SAMPLE = 1.25

@@ -925,8 +925,7 @@ typedef struct lancer_denoised_error {
 } lancer_denoised_error;
 /* Combines a picture with two denoised versions of it, and estimates the error of the result. All pictures are
  * [height][width][3], linear, finite. noisy: the pass COMBINED without alpha; noise: the pass HALVES, from at least two
- * samples; errors: the pass ERROR,
- * beyond three times of which no luminance may leave noisy where combines is 1; may be NULL.
+ * samples; errors: the pass ERROR, which tells small lights from bright pixels that are errors; may be NULL.
  * first, second: a denoiser's results for noisy + step noise and noisy - step noise, with step in (0, 1]. combines: 1
  * = the result is the combination with the least estimated error, which converges with the samples; 0 = the mean of first and
  * second. picture: receives the result, and may be one of the inputs. bars: receives the standard error of the mean luminance
