@@ -76,7 +76,7 @@ def _opened(name, threads):
 
 def study(scene, arguments, say, name):
     """Return the figures of one scene."""
-    counts = COUNTS[2:8] if arguments.quick else COUNTS
+    counts = COUNTS[2:] if arguments.quick else COUNTS
     samples = arguments.samples or (_QUICK_REFERENCE if arguments.quick else _REFERENCE)
     references = {}
     denoising.denoise(scene, False)
