@@ -156,6 +156,22 @@ TEST(Denoised, APixelThatHasMissedTheLightAroundItIsDenoised) {
     EXPECT_GT(result.picture[3 * pixel], 0.03f);
 }
 
+TEST(Denoised, ABrightPixelHasNoRingAroundIt) {
+  // A flash of which a part comes back: the bands of the pyramid keep different shares of it.
+  Noisy noisy(17, 0.01);
+  const size_t flash = kWidth * 60 + 60;
+  for (size_t c = 0; c < 3; ++c) {
+    noisy.picture[3 * flash + c] += 20.0f;
+    noisy.noise[3 * flash + c] += 10.0f;
+  }
+  const Result result = combined(noisy, each([&](size_t i, double) { return noisy.truth[i]; }));
+  for (size_t y = 50; y <= 70; ++y)
+    for (size_t x = 50; x <= 70; ++x)
+      if (const size_t pixel = y * kWidth + x; pixel != flash) {
+        EXPECT_NEAR(result.picture[3 * pixel], noisy.truth[3 * pixel], 0.05f);
+      }
+}
+
 TEST(Denoised, TheErrorOfAThinLightIsRelativeToTheLight) {
   // A light one pixel wide, 10 000 times as bright as its surroundings, with noise of a hundredth everywhere.
   Noisy noisy(9, 0.01);

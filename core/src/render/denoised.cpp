@@ -45,9 +45,8 @@ constexpr double kMostErrors = 3.0;
 
 float median(float a, float b, float c) { return std::max(std::min(a, b), std::min(std::max(a, b), c)); }
 
-// Returns the lower one of each number and the median of the 3 x 3 numbers around it: without single bright pixels, whose own
-// luminance would hide that they are wrong.
-Numbers without_peaks(const Numbers &values) {
+// Returns the median of the 3 x 3 numbers around each one.
+Numbers medians(const Numbers &values) {
   const uint32_t width = values.width;
   Numbers result(width, values.height);
   // The three numbers of each column in order, with a column beyond each end of the row.
@@ -66,9 +65,24 @@ Numbers without_peaks(const Numbers &values) {
     }
     float *to = result.row(y);
     for (uint32_t x = 0; x < width; ++x)
-      to[x] = std::min(here[x], median(std::max(std::max(least[x], least[x + 1]), least[x + 2]),
-                                       median(middle[x], middle[x + 1], middle[x + 2]),
-                                       std::min(std::min(most[x], most[x + 1]), most[x + 2])));
+      to[x] = median(std::max(std::max(least[x], least[x + 1]), least[x + 2]), median(middle[x], middle[x + 1], middle[x + 2]),
+                     std::min(std::min(most[x], most[x + 1]), most[x + 2]));
+  }
+  return result;
+}
+
+// Returns for each pixel the share of its change that stays. Where bands keep different shares of a bright pixel, rings around
+// the pixel would remain: the luminance changes from that of D towards that of Y, and beyond both by no more than the median
+// residual around the pixel, which includes light that D has moved.
+Numbers shares_without_rings(const Colors &residual, const Colors &change) {
+  Numbers of(residual.width, residual.height), result = of;
+  for (size_t i = 0; i < of.values.size(); ++i)
+    of.values[i] = std::abs(luminance(residual.values[i]));
+  const Numbers around = medians(of);
+  for (size_t i = 0; i < of.values.size(); ++i) {
+    const float own = luminance(residual.values[i]), changed = luminance(change.values[i]);
+    const float most = (own * changed > 0.0f ? std::abs(own) : 0.0f) + around.values[i];
+    result.values[i] = std::abs(changed) > most ? most / std::abs(changed) : 1.0f;
   }
   return result;
 }
@@ -115,25 +129,31 @@ DenoisedError combine_denoised(const DenoisedInput &input, double confidence, ui
     of.kept.values[i] = luminance(level.noise.values[i] - level.taken.values[i]);
   }
   // Add the share of the residual that is not noise, and the noise that comes with it.
-  if (input.combines)
+  Numbers stays(width, height);
+  if (input.combines) {
+    const Colors residual = level.residual;
     keep_shares(level);
+    stays = shares_without_rings(residual, level.residual);
+  }
   double sum = 0.0;
   Numbers results(width, height); // luminances
   for (size_t i = 0; i < pixels; ++i) {
-    const glm::vec3 kept = input.combines ? level.residual.values[i] : glm::vec3(0.0f);
+    const glm::vec3 kept = input.combines ? stays.values[i] * level.residual.values[i] : glm::vec3(0.0f);
     const glm::dvec3 result = denoised(i) + glm::dvec3(kept) * scale.of(i);
     if (input.combines) {
       of.apart.values[i] += luminance(kept);
-      of.kept.values[i] += luminance(level.taken.values[i]);
+      of.kept.values[i] += stays.values[i] * luminance(level.taken.values[i]);
     }
     for (int c = 0; c < 3; ++c)
       picture[3 * i + size_t(c)] = nearest_float(result)[c];
     results.values[i] = std::abs(luminance(nearest_float(result)));
     sum += double(results.values[i]);
   }
-  // Express differences in mean luminances, and find the luminances that the picture knows.
-  Numbers known = without_peaks(results);
+  // Express differences in mean luminances, and find the luminances without single bright pixels that the picture does not
+  // know: their own luminance would hide that they are wrong.
+  Numbers known = medians(results);
   for (size_t i = 0; i < pixels; ++i) {
+    known.values[i] = std::min(known.values[i], results.values[i]);
     if (input.errors) {
       const double error = std::max(std::abs(luminance(Scale::color(input.noise, i))), double(input.errors[i]));
       known.values[i] = std::max(known.values[i], float(double(results.values[i]) - kMostErrors * error));
