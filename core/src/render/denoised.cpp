@@ -71,8 +71,12 @@ Numbers medians(const Numbers &values) {
   return result;
 }
 
+// Share of the median residual by which a change may go beyond the pixel's residual. With 1, rings are seen; with 0, half of
+// the moved light does not come back.
+constexpr float kBeyond = 0.25f;
+
 // Returns for each pixel the share of its change that stays. Where bands keep different shares of a bright pixel, rings around
-// the pixel would remain: the luminance changes from that of D towards that of Y, and beyond both by no more than the median
+// the pixel would remain: the luminance changes from that of D towards that of Y, and beyond both by a small part of the median
 // residual around the pixel, which includes light that D has moved.
 Numbers shares_without_rings(const Colors &residual, const Colors &change) {
   Numbers of(residual.width, residual.height), result = of;
@@ -81,7 +85,7 @@ Numbers shares_without_rings(const Colors &residual, const Colors &change) {
   const Numbers around = medians(of);
   for (size_t i = 0; i < of.values.size(); ++i) {
     const float own = luminance(residual.values[i]), changed = luminance(change.values[i]);
-    const float most = (own * changed > 0.0f ? std::abs(own) : 0.0f) + around.values[i];
+    const float most = (own * changed > 0.0f ? std::abs(own) : 0.0f) + kBeyond * around.values[i];
     result.values[i] = std::abs(changed) > most ? most / std::abs(changed) : 1.0f;
   }
   return result;
