@@ -26,8 +26,8 @@ struct DenoisedInput {
 // bars, [blocks in height][blocks in width]; block: its side in pixels; 1: each pixel. Blocks at the right and upper edge may
 // be smaller.
 //
-// Z is D plus the share of the residual Y - D that is not noise (residual.h). Each luminance lies between those of D and Y, or a
-// little beyond.
+// Z is D plus the share of the residual Y - D that is not noise (residual.h). Each luminance lies between those of D and Y, or
+// a little beyond.
 DenoisedError combine_denoised(const DenoisedInput &input, double confidence, uint32_t block, float *picture,
                                std::vector<float> &bars);
 
