@@ -5,7 +5,7 @@ Generated from core/include/lancer.h by `make bindings`; changes here are lost.
 
 from enum import IntEnum, IntFlag
 
-ABI_VERSION = 9
+ABI_VERSION = 10
 MOST_NODES = 4096
 DEEPEST_RECURSION = 16
 
@@ -44,6 +44,8 @@ class Struct(IntEnum):
     LOBE_INFO = 19
     ERROR = 20
     DENOISED_ERROR = 21
+    RANGE = 22
+    PART = 23
 
 
 class NormalDomain(IntEnum):

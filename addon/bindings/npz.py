@@ -4,6 +4,7 @@ A file may come from any source: load_npz returns records whose fields have the 
 SnapshotError. A file that cannot be opened raises OSError.
 """
 
+import contextlib
 import dataclasses
 import functools
 import json
@@ -30,6 +31,7 @@ def register(cls):
 
 
 def save_npz(record, path):
+    """Write a record to a path or an open binary file."""
     arrays = {}
 
     def encode(value):
@@ -47,19 +49,24 @@ def save_npz(record, path):
         return value
 
     tree = json.dumps(encode(record)).encode("utf-8")
-    with open(os.fspath(path), "wb") as file:
+    with _opened(path, "wb") as file:
         np.savez(file, **{_TREE: np.frombuffer(tree, np.uint8)}, **arrays)
 
 
 def load_npz(path):
-    path = os.fspath(path)
-    with open(path, "rb") as file:
+    """Return the record in a path or an open binary file."""
+    with _opened(path, "rb") as file:
         try:
             return _read(file)
         except Exception as error:
             # A damaged file can raise any exception: in the archive, an array's header, the tree or a record.
             reason = "it holds no tree of records" if isinstance(error, _NoTree) else f"{type(error).__name__}: {error}"
-            raise SnapshotError(f"{path} holds no scene snapshot: {reason}") from error
+            raise SnapshotError(f"{getattr(file, 'name', 'the file')} holds no scene snapshot: {reason}") from error
+
+
+def _opened(path, mode):
+    """Return a context of the file at a path; an open file stays open."""
+    return contextlib.nullcontext(path) if hasattr(path, "read") else open(os.fspath(path), mode)
 
 
 class _NoTree(Exception):

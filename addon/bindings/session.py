@@ -17,6 +17,7 @@ import numpy as np
 
 from . import abi, marshal
 from .abi import LancerError, Pass, Status, check, load_library
+from .parts import SessionParts
 from .probes import SceneProbes, SessionProbes, microfacet, pixel_filter, sampler
 from .snapshot import InstanceTable
 
@@ -189,6 +190,12 @@ class Scene(_Handle, SceneProbes):
         if release:
             snapshot.set("instances", InstanceTable())
 
+    def set_digest(self, digest):
+        """Name the scene in parts of pictures: 32 bytes of bindings.digest.scene_digest."""
+        if len(digest) != 32:
+            raise ValueError(f"a digest has 32 bytes, not {len(digest)}")
+        self._check(self.library.lancer_scene_set_digest(self.handle, bytes(digest)))
+
     def commit(self, accelerator=abi.Accelerator.BVH, threads=0, poll=None):
         self.begin_commit(accelerator, threads)
         while not self.is_committed(_STEP):
@@ -214,19 +221,30 @@ class Scene(_Handle, SceneProbes):
         return text.value.decode("utf-8", "replace").splitlines()
 
 
-class Session(_Handle, SessionProbes):
+class Session(_Handle, SessionParts, SessionProbes):
     """A film over a committed scene. The scene stays open when the session closes, unless upload() created it."""
 
     def __init__(self, scene, camera, settings):
-        handle = ctypes.c_uint64()
         library = scene.library
+        self._create(library, scene, camera, settings, library.lancer_session_create, scene.handle)
+
+    def _create(self, library, scene, camera, settings, create, identity):
+        handle = ctypes.c_uint64()
         arguments = ctypes.byref(marshal.camera(camera)), ctypes.byref(marshal.settings(settings))
-        check(library.lancer_session_create(scene.handle, *arguments, ctypes.byref(handle)), library)
+        check(create(identity, *arguments, ctypes.byref(handle)), library)
         self._own(library, library.lancer_session_destroy, handle.value)
         self.scene = scene
         self.camera = camera
         self.settings = settings
         self._owns_scene = False
+
+    @classmethod
+    def joiner(cls, digest, camera, settings, library=None):
+        """Return a session without a scene, which joins parts of pictures and cannot render; settings.refines must be set."""
+        library = library or load_library()
+        session = cls.__new__(cls)
+        session._create(library, None, camera, settings, library.lancer_session_create_joiner, bytes(digest))
+        return session
 
     @classmethod
     def upload(cls, snapshot, library=None, poll=None, release=False):
@@ -307,7 +325,7 @@ class Session(_Handle, SessionProbes):
         return Statistics(**{k: v.decode("utf-8", "replace") if isinstance(v, bytes) else v for k, v in values.items()})
 
     def messages(self):
-        return self.scene.messages()
+        return self.scene.messages() if self.scene is not None else []
 
     def debug_sample(self, x, y, s, capacity=64):
         """Trace sample s of pixel (x, y) again; return its RGBA and its vertices (a record array of lancer_vertex)."""

@@ -278,6 +278,7 @@ class Settings(_CoreSettings):
     target_error: float = 0.0  # relative; 0 = off
     time_limit: float = 0.0  # s; 0 = off
     accelerator: int = Accelerator.BVH
+    in_parts: bool = False  # whether sessions render or join parts of the picture
 
     def __post_init__(self):
         self.set("passes", tuple(int(Pass(p)) for p in self.passes))
@@ -285,7 +286,7 @@ class Settings(_CoreSettings):
     @property
     def refines(self):
         """Whether pixels may get different numbers of samples."""
-        return self.target_error > 0.0 or self.time_limit > 0.0
+        return self.target_error > 0.0 or self.time_limit > 0.0 or self.in_parts
 
 
 @register
@@ -307,11 +308,12 @@ class SceneSnapshot(Record):
             self.set("world", World(radiance=self.world))
 
     def save(self, path):
+        """Write the snapshot to a path or an open binary file."""
         save_npz(self, path)
 
     @classmethod
     def load(cls, path):
-        """Return the snapshot in a file; raise SnapshotError if the file holds no valid one."""
+        """Return the snapshot in a path or an open binary file; raise SnapshotError if it holds no valid one."""
         snapshot = load_npz(path)
         if not isinstance(snapshot, cls):
             raise SnapshotError(f"{path} holds no scene snapshot: it holds a {type(snapshot).__name__}")

@@ -3,7 +3,7 @@
 Generated from core/include/lancer.h by `make bindings`; changes here are lost.
 """
 
-from ctypes import POINTER, Structure, c_char, c_char_p, c_double, c_float, c_int32, c_uint32, c_uint64, c_void_p
+from ctypes import POINTER, Structure, c_char, c_char_p, c_double, c_float, c_int32, c_uint8, c_uint32, c_uint64, c_void_p
 
 from .enums import Struct
 
@@ -335,6 +335,33 @@ class DenoisedError(Structure):
     ]
 
 
+class Range(Structure):
+    """Samples first ..."""
+
+    _fields_ = [
+        ("tile", c_uint32),
+        ("first", c_uint32),
+        ("count", c_uint32),
+    ]
+
+
+class Part(Structure):
+    """The picture that a part belongs to, and the samples that it holds."""
+
+    _fields_ = [
+        ("digest", c_uint8 * 32),
+        ("hash", c_uint64),
+        ("samples", c_uint64),
+        ("camera", Camera),
+        ("settings", Settings),
+        ("split_lights", c_uint32),
+        ("split_paths", c_uint32),
+        ("tiles", c_uint32),
+        ("first", c_uint32),
+        ("end", c_uint32),
+    ]
+
+
 class Vertex(Structure):
     """One vertex of a replayed sample."""
 
@@ -424,6 +451,8 @@ STRUCTS = {
     Struct.LOBE_INFO: LobeInfo,
     Struct.ERROR: Error,
     Struct.DENOISED_ERROR: DenoisedError,
+    Struct.RANGE: Range,
+    Struct.PART: Part,
 }
 
 # Kind and default of each parameter, from lancer.h.

@@ -32,7 +32,7 @@ extern "C" {
 #endif
 
 /* Incremented with each change of a struct or a call of this header. */
-#define LANCER_ABI_VERSION 9u
+#define LANCER_ABI_VERSION 10u
 
 /* Limits: nodes of a material or world; recursion of CLASSIC, in which glass doubles the rays with every depth. */
 #define LANCER_MOST_NODES 4096u
@@ -84,6 +84,8 @@ typedef enum lancer_struct {
   LANCER_STRUCT_LOBE_INFO,
   LANCER_STRUCT_ERROR,
   LANCER_STRUCT_DENOISED_ERROR,
+  LANCER_STRUCT_RANGE,
+  LANCER_STRUCT_PART,
   LANCER_STRUCT_COUNT
 } lancer_struct;
 /* Returns sizeof the struct with this lancer_struct number, or 0 for an unknown number, so that a caller can refuse a stale
@@ -736,6 +738,10 @@ LANCER_API lancer_status lancer_scene_cancel(lancer_scene scene);
  * Writes at most size bytes; *needed (may be NULL) receives the full size with the NUL. */
 LANCER_API lancer_status lancer_scene_messages(lancer_scene scene, char *text, size_t size, size_t *needed);
 
+/* Names the scene in parts of pictures: a hash of its description, e.g. SHA-256, which the caller computes. Copied by the
+ * sessions that are created afterwards. Allowed before and after the commit. */
+LANCER_API lancer_status lancer_scene_set_digest(lancer_scene scene, const uint8_t digest[32]);
+
 /* ---- session: camera, settings, film ----------------------------------------------------------------------------- */
 
 enum lancer_camera_kind {
@@ -847,7 +853,7 @@ typedef struct lancer_settings {
   uint32_t passes;           /* [bits 1 134217727] 1u << LANCER_PASS_*; COMBINED is always kept */
   uint32_t threads;          /* [number 0 1024] 0 = one per processor */
   uint32_t tile_size;        /* [number 0] pixels; 0 = automatic. Changes no pixel */
-  uint32_t refines;          /* [switch 0] lancer_session_refine will be called */
+  uint32_t refines;          /* [switch 0] the session refines, or renders or joins parts of a picture */
 } lancer_settings;
 
 typedef struct lancer_progress {
@@ -871,7 +877,7 @@ typedef struct lancer_statistics {
   char instruction_set[32];           /* e.g. "AVX2" */
   uint64_t texture_bytes;             /* images; geometry_bytes covers meshes, instances and lights */
   uint64_t vertices;                  /* of rays on surfaces, without layers that a cut-out removes */
-  uint32_t split_lights, split_paths; /* the numbers in use; 0 before the first sample */
+  uint32_t split_lights, split_paths; /* the numbers in use; 0 until they are found */
 } lancer_statistics;
 
 /* Checks camera and settings and allocates the film. Fails unless the scene is committed. */
@@ -934,6 +940,77 @@ LANCER_API lancer_status lancer_combine_denoised(uint32_t width, uint32_t height
                                                  const float *errors, const float *first, const float *second, double step,
                                                  uint32_t combines, double confidence, uint32_t block, float *picture,
                                                  float *bars, lancer_denoised_error *error);
+
+/* ---- parts of a picture ------------------------------------------------------------------------------------------
+ *
+ * Several sessions, also on several machines, render one picture: each renders some samples of some tiles and exports their
+ * sums as a part. Joined in any order, all parts give the bits of one session that has rendered all samples. The sessions need
+ * settings.refines, a digest of the scene, and the same scene, camera and settings, but for samples, features, threads and
+ * tile_size. The numbers of lights and paths of a sample are found once, by lancer_session_decide, and given to all sessions
+ * in settings.split_lights and split_paths.
+ *
+ * A part is a string of bytes without padding. Numbers are little-endian; f32 and f64 are those of IEEE 754; pixels are in the
+ * order of their tile.
+ *   char[8] "LANCERPT", u32 format (1), u32 LANCER_ABI_VERSION, u64 size of the part in bytes
+ *   lancer_part
+ *   u64[4] camera rays, bounce rays, shadow rays, vertices
+ *   i64[3][32] luminance that clamping has removed, and that of the last bounce and the one before: digits of base 256, the
+ *     lowest one in units of 2^-150
+ *   for each tile, by rising number:
+ *     u32 tile, u32 n, u32 d, u32 m (1 if the tile has sample 0, else 0)
+ *     n times u32 start, u32 level: sums of the samples start ... start + 2^level - 1, by rising start, a multiple of 2^level
+ *     n times f64[pixels][channels] sums of the summed passes in order of pass, as film_passes.cpp lists them; f32[pixels]
+ *       difference of the mean luminances of both halves (0 if level is 0); f32[pixels][halves] the same of each pass of halves
+ *     f32[pixels] largest absolute luminance of a sample
+ *     m times f32[pixels][channels] values of sample 0
+ *     d times u64 number of dropped samples, by the bit width of the sample's number
+ *     d > 0: u32[3] x, y, sample of the first dropped one
+ *   u64 XXH64, with seed 0, of all bytes before */
+
+/* Samples first ... first + count - 1 of all pixels of a tile. */
+typedef struct lancer_range {
+  uint32_t tile, first, count;
+} lancer_range;
+
+/* The picture that a part belongs to, and the samples that it holds. */
+typedef struct lancer_part {
+  uint8_t digest[32]; /* of the scene */
+  uint64_t hash;      /* of digest, camera and the settings that must be equal: XXH64 */
+  uint64_t samples;   /* pixel samples */
+  lancer_camera camera;
+  lancer_settings settings;           /* features, threads and tile_size are 0 */
+  uint32_t split_lights, split_paths; /* the numbers in use, as in settings */
+  uint32_t tiles;                     /* number of tiles with samples */
+  uint32_t first, end;                /* the lowest number of a sample, and the highest plus 1 */
+} lancer_part;
+
+/* Writes the number of pixels of the first capacity tiles; *count receives the number of tiles. */
+LANCER_API lancer_status lancer_session_tiles(lancer_session session, uint32_t capacity, uint32_t *pixels, uint32_t *count);
+/* Starts to find the numbers of lights and paths of a sample, without rendering any; lancer_session_wait waits for them, and
+ * lancer_session_statistics tells them. */
+LANCER_API lancer_status lancer_session_decide(lancer_session session);
+/* Writes the first capacity ranges of the round that lancer_session_refine would start, in order of gain; *count receives
+ * their number, 0 if nothing is left to double. */
+LANCER_API lancer_status lancer_session_plan(lancer_session session, double target, double confidence, uint32_t capacity,
+                                             lancer_range *ranges, uint32_t *count);
+/* Starts the given ranges, each of another tile. A tile's range starts anywhere if the tile has no samples, and continues it
+ * otherwise. lancer_session_stop cancels it. */
+LANCER_API lancer_status lancer_session_render_ranges(lancer_session session, uint32_t count, const lancer_range *ranges);
+/* Forgets all samples, also after a cancelled range, and keeps the numbers of lights and paths. */
+LANCER_API lancer_status lancer_session_clear(lancer_session session);
+/* Writes all samples of the session as a part, if size is at least its size; *needed (may be NULL) receives its size. Fails
+ * while rendering. */
+LANCER_API lancer_status lancer_session_export(lancer_session session, void *part, size_t size, size_t *needed);
+/* Checks a part and adds its samples. A part that is damaged, of another picture, or has samples that the session has already
+ * is refused as a whole. Without any samples before, and with split_lights and split_paths of 0, the session takes over the
+ * part's numbers. Fails while rendering. */
+LANCER_API lancer_status lancer_session_import(lancer_session session, const void *part, size_t size);
+/* Creates a session without a scene, which joins parts: it plans rounds, reads passes and errors, exports and imports, and
+ * cannot render. digest: of the scene. */
+LANCER_API lancer_status lancer_session_create_joiner(const uint8_t digest[32], const lancer_camera *camera,
+                                                      const lancer_settings *settings, lancer_session *session);
+/* Checks a part's size and checksum, and copies its description. */
+LANCER_API lancer_status lancer_part_describe(const void *part, size_t size, lancer_part *description);
 
 /* ---- replay ------------------------------------------------------------------------------------------------------ */
 

@@ -26,11 +26,6 @@ template <class Fill> lancer_status fill_scene(lancer_scene handle, const void *
   });
 }
 
-void check_confidence(const char *what, double confidence) {
-  if (!(confidence > 0.0 && confidence < 1.0))
-    bad_argument(std::string(what) + ": confidence " + std::to_string(confidence) + " must be between 0 and 1");
-}
-
 // Longest side of a picture that comes in arrays, far above Blender's.
 constexpr uint32_t kLongestSide = 1u << 20;
 
@@ -46,12 +41,12 @@ const char *lancer_last_error(void) { return last_error; }
 
 uint32_t lancer_sizeof(uint32_t which) {
   static constexpr size_t sizes[LANCER_STRUCT_COUNT] = {
-      sizeof(lancer_mesh),         sizeof(lancer_instance),      sizeof(lancer_parameter), sizeof(lancer_lobe),
-      sizeof(lancer_material),     sizeof(lancer_light),         sizeof(lancer_camera),    sizeof(lancer_settings),
-      sizeof(lancer_progress),     sizeof(lancer_statistics),    sizeof(lancer_hit),       sizeof(lancer_vertex),
-      sizeof(lancer_light_sample), sizeof(lancer_bsdf_sample),   sizeof(lancer_attribute), sizeof(lancer_image),
-      sizeof(lancer_node),         sizeof(lancer_principled),    sizeof(lancer_world),     sizeof(lancer_lobe_info),
-      sizeof(lancer_error),        sizeof(lancer_denoised_error)};
+      sizeof(lancer_mesh),         sizeof(lancer_instance),       sizeof(lancer_parameter), sizeof(lancer_lobe),
+      sizeof(lancer_material),     sizeof(lancer_light),          sizeof(lancer_camera),    sizeof(lancer_settings),
+      sizeof(lancer_progress),     sizeof(lancer_statistics),     sizeof(lancer_hit),       sizeof(lancer_vertex),
+      sizeof(lancer_light_sample), sizeof(lancer_bsdf_sample),    sizeof(lancer_attribute), sizeof(lancer_image),
+      sizeof(lancer_node),         sizeof(lancer_principled),     sizeof(lancer_world),     sizeof(lancer_lobe_info),
+      sizeof(lancer_error),        sizeof(lancer_denoised_error), sizeof(lancer_range),     sizeof(lancer_part)};
   return which < LANCER_STRUCT_COUNT ? uint32_t(sizes[which]) : 0;
 }
 
@@ -197,12 +192,14 @@ lancer_status lancer_session_create(lancer_scene scene, const lancer_camera *cam
     require(settings, "settings");
     require(session, "session");
     std::shared_ptr<const Scene> committed;
+    Identity identity{{}, false, *camera, *settings};
     {
       const std::lock_guard lock(object->mutex);
       committed = object->committed();
+      identity.digest = object->digest;
+      identity.has_digest = object->has_digest;
     }
-    *session =
-        sessions().add(std::make_shared<SessionObject>(std::move(committed), read_camera(*camera), read_settings(*settings)));
+    *session = sessions().add(std::make_shared<SessionObject>(std::move(committed), identity));
     return LANCER_OK;
   });
 }
@@ -257,8 +254,7 @@ lancer_status lancer_session_stop(lancer_session session) {
 lancer_status lancer_session_refine(lancer_session session, double target, double confidence) {
   return guard([&]() -> lancer_status {
     const auto object = session_of(session);
-    if (!(target >= 0.0) || !std::isfinite(target))
-      bad_argument("refine: target " + std::to_string(target) + " must be finite and not negative");
+    check_target("refine", target);
     check_confidence("refine", confidence);
     const std::lock_guard lock(object->mutex);
     return object->session.refine(target, confidence) ? LANCER_OK : LANCER_CANCELLED;
@@ -337,9 +333,7 @@ lancer_status lancer_session_statistics(lancer_session session, lancer_statistic
     require(statistics, "statistics");
     const std::lock_guard lock(object->mutex);
     const SessionStatistics from = object->session.statistics();
-    const Scene &scene = object->session.scene();
     *statistics = {};
-    statistics->build_seconds = scene.build_seconds;
     statistics->render_seconds = from.render_seconds;
     statistics->samples = from.samples;
     statistics->camera_rays = from.rays.camera;
@@ -350,22 +344,26 @@ lancer_status lancer_session_statistics(lancer_session session, lancer_statistic
     statistics->invalid_y = from.first_invalid.y;
     statistics->invalid_sample = from.first_invalid.sample;
     statistics->threads = from.threads;
+    statistics->film_bytes = from.film_bytes;
+    copy_text(statistics->kernel, sizeof statistics->kernel, from.kernel);
+    statistics->split_lights = from.splits.lights;
+    statistics->split_paths = from.splits.paths;
+    statistics->vertices = from.vertices;
+    if (object->session.only_joins())
+      return LANCER_OK;
+    const Scene &scene = object->session.scene();
+    statistics->build_seconds = scene.build_seconds;
     statistics->triangles = scene.triangles;
     statistics->instances = scene.geometry.instances.size();
     statistics->lights = scene.lights.size();
     statistics->geometry_bytes = scene.geometry_bytes();
     statistics->accelerator_bytes = scene.accelerator->bytes();
-    statistics->film_bytes = from.film_bytes;
+    statistics->texture_bytes = scene.texture_bytes();
     const bool lens = object->session.camera().lens_radius > 0.0;
     copy_text(statistics->features, sizeof statistics->features,
               feature_names({scene.features, scene.shapes}) + (lens ? " lens" : ""));
-    copy_text(statistics->kernel, sizeof statistics->kernel, from.kernel);
     copy_text(statistics->instruction_set, sizeof statistics->instruction_set,
               instruction_set() == InstructionSet::Scalar ? "scalar" : scene.accelerator->instruction_set());
-    statistics->texture_bytes = scene.texture_bytes();
-    statistics->split_lights = from.splits.lights;
-    statistics->split_paths = from.splits.paths;
-    statistics->vertices = from.vertices;
     return LANCER_OK;
   });
 }

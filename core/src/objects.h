@@ -3,9 +3,12 @@
 
 #include "lancer.h"
 #include "render/session.h"
+#include "scene/fill.h"
 #include "scene/messages.h"
 #include "simd/processor.h"
 
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <memory>
@@ -71,6 +74,16 @@ inline void require(const void *pointer, const char *name) {
     bad_argument(std::string(name) + " is NULL");
 }
 
+inline void check_confidence(const char *what, double confidence) {
+  if (!(confidence > 0.0 && confidence < 1.0))
+    bad_argument(std::string(what) + ": confidence " + std::to_string(confidence) + " must be between 0 and 1");
+}
+
+inline void check_target(const char *what, double target) {
+  if (!(target >= 0.0) || !std::isfinite(target))
+    bad_argument(std::string(what) + ": target " + std::to_string(target) + " must be finite and not negative");
+}
+
 // Handles of one kind. A number is never used twice, and kinds differ in their highest byte: a freed or foreign handle finds no
 // object.
 template <class T> class Handles {
@@ -113,6 +126,8 @@ public:
   Description description;
   std::shared_ptr<const Scene> scene; // set by commit
   std::string messages;
+  std::array<uint8_t, 32> digest{};
+  bool has_digest = false;
   std::atomic<bool> cancel{false};
   enum class State { Filling, Committing, Committed, Failed } state = State::Filling;
   std::unique_ptr<ThreadPool> builder; // last: its thread ends before the members that it works on are destroyed
@@ -131,8 +146,8 @@ public:
 };
 
 struct SessionObject {
-  SessionObject(std::shared_ptr<const Scene> scene, const Camera &camera, const IntegratorSettings &settings)
-      : session(std::move(scene), camera, settings) {}
+  SessionObject(std::shared_ptr<const Scene> scene, const Identity &identity)
+      : session(std::move(scene), read_camera(identity.camera), read_settings(identity.settings), identity) {}
   std::mutex mutex;
   Session session;
 };

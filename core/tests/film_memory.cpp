@@ -73,7 +73,7 @@ TEST(FilmMemory, NeedsTheSumsThatWait) {
   for (uint32_t samples = 1; samples <= 40; ++samples) {
     film.add(film.tile(0), 1, results);
     const Film::Tile &tile = film.tile(0);
-    const size_t kept = film.bytes() - sizeof(Film::Tile) - tile.levels.size() * sizeof(tile.levels[0]);
+    const size_t kept = film.bytes() - sizeof(Film::Tile) - tile.nodes.size() * sizeof(tile.nodes[0]);
     const auto sums = uint32_t(std::popcount(samples));
     EXPECT_EQ(Film::bytes_needed(kPixels, 1, bit(Pass::Combined) | bit(Pass::Depth), sums), double(kept)) << samples;
   }

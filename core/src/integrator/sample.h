@@ -2,6 +2,7 @@
 #pragma once
 
 #include "compile/scene.h"
+#include "integrator/exact_sum.h"
 #include "integrator/settings_table.h"
 #include "sampling/pixel_filter.h"
 #include "scene/camera.h"
@@ -102,29 +103,41 @@ struct RayCounts {
     shadow += other.shadow;
     return *this;
   }
+  RayCounts &operator-=(const RayCounts &other) {
+    camera -= other.camera;
+    bounce -= other.bounce;
+    shadow -= other.shadow;
+    return *this;
+  }
 };
 
 // Luminance that clamping removes, and that of the last bounces, summed over samples.
 struct Energy {
-  double clipped = 0.0;                 // by clamping
-  double last = 0.0, before_last = 0.0; // found by the last bounce that is followed, and by the one before
+  ExactSum clipped;           // by clamping
+  ExactSum last, before_last; // found by the last bounce that is followed, and by the one before
 
   // Returns an estimate of the light of all bounces beyond the last: the sum of a geometric series with the ratio of the last
   // two bounces. Once indirect light has spread, it falls off at least as fast as this series. Returns infinity if the last
   // bounce finds no less light than the bounce before.
   double beyond() const {
     // With negative emission, the light found by a bounce may be negative.
-    const double found = std::abs(last), before = std::abs(before_last);
+    const double found = std::abs(last.value()), before = std::abs(before_last.value());
     if (found <= 0.0)
       return 0.0;
     return found < before ? found * found / (before - found) : std::numeric_limits<double>::infinity();
   }
   // Ignores values that are not finite, because the film drops their sample.
-  void clip(double light) { clipped += std::isfinite(light) ? std::abs(light) : 0.0; }
+  void clip(float light) { clipped += std::isfinite(light) ? std::abs(light) : 0.0f; }
   Energy &operator+=(const Energy &other) {
     clipped += other.clipped;
     last += other.last;
     before_last += other.before_last;
+    return *this;
+  }
+  Energy &operator-=(const Energy &other) {
+    clipped -= other.clipped;
+    last -= other.last;
+    before_last -= other.before_last;
     return *this;
   }
 };

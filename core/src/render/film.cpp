@@ -20,6 +20,17 @@ void join(const std::vector<double> &earlier, std::vector<double> &later) {
     later[i] = earlier[i] + later[i];
 }
 
+// Whether two nodes are the halves of one subtree.
+bool are_halves(const Film::Node &earlier, const Film::Node &later) {
+  return earlier.level == later.level && earlier.end() == later.start && (earlier.start >> earlier.level & 1u) == 0;
+}
+
+// Turns the later half into the subtree.
+void take_half(Film::Node &later) {
+  later.start -= 1u << later.level;
+  ++later.level;
+}
+
 } // namespace
 
 Film::Layout::Layout(uint32_t passes) {
@@ -97,29 +108,43 @@ void Film::add(Tile &tile, uint32_t samples, std::span<const SampleResult> resul
   const uint32_t pixels = tile.pixels();
   const std::lock_guard lock(tile.mutex);
   if (tile.count == 0) {
-    keep_first(tile, results);
+    if (tile.first_sample == 0)
+      keep_first(tile, results);
     tile.brightest.resize(pixels);
   }
-  Sums carry;
+  // Sums that have been joined leave their memory to the next ones.
+  std::vector<Sums> spare;
   for (uint32_t s = 0; s < samples; ++s) {
-    // Allocate first: if memory is missing, the samples counted so far stay valid.
-    const uint32_t level = uint32_t(std::countr_one(tile.count));
-    if (tile.levels.size() <= level)
-      tile.levels.resize(level + 1);
-    carry.channels.resize(size_t(pixels) * layout_.summed_channels);
-    carry.differences.assign(pixels, 0.0f);
-    carry.color_differences.assign(size_t(pixels) * layout_.difference_channels, 0.0f);
-    gather(results.subspan(size_t(s) * pixels, pixels), carry, tile.brightest.data());
-    // A new leaf is joined with every complete neighbour, smaller sample numbers first. All pixels have the same count.
-    for (uint32_t joined = 0; joined < level; ++joined) {
-      if (joined + 1 == level)
-        keep_differences(tile.levels[joined], joined, carry);
-      join(tile.levels[joined].channels, carry.channels);
+    Node leaf{tile.next(), 0, {}};
+    // Find the complete neighbours with which the leaf is joined.
+    size_t joined = 0;
+    while (joined < tile.nodes.size() && are_halves(tile.nodes[tile.nodes.size() - 1 - joined], leaf)) {
+      ++joined;
+      take_half(leaf);
     }
-    std::swap(tile.levels[level], carry);
+    // Allocate first: if memory is missing, the samples counted so far stay valid.
+    tile.nodes.reserve(tile.nodes.size() + 1);
+    spare.reserve(spare.size() + joined);
+    if (!spare.empty()) {
+      leaf.sums = std::move(spare.back());
+      spare.pop_back();
+    }
+    leaf.sums.channels.resize(size_t(pixels) * layout_.summed_channels);
+    leaf.sums.differences.assign(pixels, 0.0f);
+    leaf.sums.color_differences.assign(size_t(pixels) * layout_.difference_channels, 0.0f);
+    gather(results.subspan(size_t(s) * pixels, pixels), leaf.sums, tile.brightest.data());
+    // Join smaller sample numbers first.
+    for (size_t i = 0; i < joined; ++i) {
+      Node &earlier = tile.nodes.back();
+      if (i + 1 == joined)
+        keep_differences(earlier.sums, earlier.level, leaf.sums);
+      join(earlier.sums.channels, leaf.sums.channels);
+      spare.push_back(std::move(earlier.sums));
+      tile.nodes.pop_back();
+    }
+    tile.nodes.push_back(std::move(leaf));
     ++tile.count;
   }
-  forget_joined(tile);
 }
 
 // The sum of 2^k equal numbers is exactly 2^k times the number.
@@ -132,28 +157,56 @@ void Film::add_even(Tile &tile, uint32_t samples, const SampleResult &result) {
   leaf.differences.assign(pixels, 0.0f);
   leaf.color_differences.assign(size_t(pixels) * layout_.difference_channels, 0.0f);
   if (tile.count == 0) {
-    keep_first(tile, results);
+    if (tile.first_sample == 0)
+      keep_first(tile, results);
     tile.brightest.resize(pixels);
   }
   gather(results, leaf, tile.brightest.data());
-  const uint32_t count = tile.count + samples;
-  tile.levels.resize(std::max(tile.levels.size(), size_t(std::bit_width(count))));
-  for (uint32_t level = 0; level < tile.levels.size(); ++level) {
-    if (!(count >> level & 1) || tile.waits(level))
-      continue;
-    tile.levels[level] = leaf;
-    for (double &channel : tile.levels[level].channels)
+  // Divide all samples into the largest subtrees.
+  const uint32_t from = tile.count == 0 ? tile.first_sample : tile.nodes.front().start, end = tile.next() + samples;
+  std::vector<Node> nodes;
+  for (uint32_t start = from; start < end;) {
+    const uint32_t largest = std::bit_floor(end - start), aligned = start == 0 ? largest : start & (0 - start);
+    const auto level = uint32_t(std::countr_zero(std::min(largest, aligned)));
+    nodes.push_back({start, level, leaf});
+    for (double &channel : nodes.back().sums.channels)
       channel *= double(1u << level);
+    start += 1u << level;
   }
-  tile.count = count;
-  forget_joined(tile);
+  tile.nodes = std::move(nodes);
+  tile.count += samples;
 }
 
-// Frees sums that have been joined into larger ones.
-void Film::forget_joined(Tile &tile) {
-  for (uint32_t level = 0; level < tile.levels.size(); ++level)
-    if (!tile.waits(level))
-      tile.levels[level] = Sums();
+void Film::insert(Tile &tile, Node &&node) const {
+  const std::lock_guard lock(tile.mutex);
+  tile.count += 1u << node.level;
+  auto at = std::find_if(tile.nodes.begin(), tile.nodes.end(), [&](const Node &other) { return other.start > node.start; });
+  at = tile.nodes.insert(at, std::move(node));
+  const auto join_with_next = [&](std::vector<Node>::iterator earlier) {
+    const auto later = earlier + 1;
+    keep_differences(earlier->sums, earlier->level, later->sums);
+    join(earlier->sums.channels, later->sums.channels);
+    take_half(*later);
+    return tile.nodes.erase(earlier);
+  };
+  while (true) {
+    if (at != tile.nodes.begin() && are_halves(*(at - 1), *at))
+      at = join_with_next(at - 1);
+    else if (at + 1 != tile.nodes.end() && are_halves(*at, *(at + 1)))
+      at = join_with_next(at);
+    else
+      return;
+  }
+}
+
+void Film::clear(Tile &tile, uint32_t first_sample) {
+  const std::lock_guard lock(tile.mutex);
+  tile.first_sample = first_sample;
+  tile.count = 0;
+  tile.nodes.clear();
+  tile.first.clear();
+  tile.brightest.clear();
+  tile.dropped.clear();
 }
 
 void Film::drop(Tile &tile, const SampleAddress &address) {
@@ -183,6 +236,7 @@ Film::Dropped Film::dropped() const {
 void Film::round_down(Tile &tile) {
   const std::lock_guard lock(tile.mutex);
   tile.count = std::bit_floor(tile.count);
+  tile.nodes.resize(std::min<size_t>(tile.nodes.size(), 1));
   // The sample numbers below a power of two are those with a smaller bit width.
   const auto width = size_t(std::bit_width(tile.count));
   if (tile.dropped.size() > width) {
@@ -190,7 +244,6 @@ void Film::round_down(Tile &tile) {
     while (!tile.dropped.empty() && tile.dropped.back() == 0)
       tile.dropped.pop_back();
   }
-  forget_joined(tile);
 }
 
 std::pair<uint32_t, uint32_t> Film::sample_range() const {
@@ -277,9 +330,9 @@ size_t Film::bytes() const {
     const std::lock_guard lock(tile->mutex);
     bytes += sizeof(Tile) + (tile->first.capacity() + tile->brightest.capacity()) * sizeof(float);
     bytes += tile->dropped.capacity() * sizeof(uint64_t);
-    for (const Sums &level : tile->levels)
-      bytes += sizeof(level) + level.channels.capacity() * sizeof(double) +
-               (level.differences.capacity() + level.color_differences.capacity()) * sizeof(float);
+    for (const Node &node : tile->nodes)
+      bytes += sizeof(node) + node.sums.channels.capacity() * sizeof(double) +
+               (node.sums.differences.capacity() + node.sums.color_differences.capacity()) * sizeof(float);
   }
   return bytes;
 }

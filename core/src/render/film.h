@@ -30,9 +30,9 @@ uint32_t place_in_sample(Pass pass);
 glm::dvec3 divide_by_color(const glm::dvec3 &light, const glm::dvec3 &color);
 
 // The samples of a pixel are summed along one fixed binary tree over their numbers: sample s is a leaf, and two neighbouring
-// complete subtrees of equal size are always joined. While samples arrive in order, only the sums that wait for their neighbour
-// are stored, one per bit of the count, as in a binary counter. So the bits depend neither on threads, nor on tiles, nor on the
-// division of the range, and another machine can compute any complete subtree.
+// complete subtrees of equal size are always joined. Only the sums that wait for their neighbour are stored: while samples
+// arrive in order, one per bit of the count, as in a binary counter. So the bits depend neither on threads, nor on tiles, nor
+// on the division of the range, and another machine can compute any subtree: insert() adds it.
 //
 // Beside the sum of a subtree, the film stores the difference of the luminances of its two halves, from which the error of the
 // picture is estimated. All samples of a pixel are points of one sequence. For its first N = 2^k points, let V(N) be the
@@ -59,12 +59,20 @@ public:
     std::vector<float> differences, color_differences;
   };
 
+  // The subtree of the samples start ... start + 2^level - 1.
+  struct Node {
+    uint32_t start = 0, level = 0;
+    Sums sums;
+
+    uint64_t end() const { return start + (uint64_t(1) << level); }
+  };
+
   struct Tile {
     uint32_t x, y, width, height;
     Cells cells = Cells::All;
-    uint32_t count = 0; // samples of each of its pixels
-    // Indexed by bit of count. If the bit is not set, the level is empty or its content is meaningless.
-    std::vector<Sums> levels;
+    uint32_t count = 0;            // samples of each of its pixels
+    uint32_t first_sample = 0;     // the one that add() gives to an empty tile
+    std::vector<Node> nodes;       // by start; no two of them can be joined
     std::vector<float> first;      // [pixel][channel of sample 0]
     std::vector<float> brightest;  // [pixel] largest luminance of a sample, by its absolute value
     std::vector<uint64_t> dropped; // by the bit width of the sample's number; empty where none was dropped
@@ -73,8 +81,10 @@ public:
 
     uint32_t pixels() const;
     glm::uvec2 place(uint32_t pixel) const;
-    // Whether the sum of a level waits for its neighbour.
-    bool waits(uint32_t level) const { return (count >> level & 1u) != 0; }
+    // Returns the number of the sample that add() adds next.
+    uint32_t next() const { return nodes.empty() ? first_sample : uint32_t(nodes.back().end()); }
+    // Whether the samples are 0 ... count - 1.
+    bool whole() const { return count == 0 || next() == count; }
   };
 
   size_t tile_count() const { return tiles_.size(); }
@@ -85,8 +95,12 @@ public:
   // Adds the next samples of all pixels of a tile: results[s][pixel] in order of sample. If memory runs out, the tile keeps the
   // samples counted so far.
   void add(Tile &tile, uint32_t samples, std::span<const SampleResult> results);
-  // Adds samples that are equal in all pixels, to a tile that has no other samples.
+  // Adds the next samples where they are equal in all pixels, to a tile that has no other samples.
   void add_even(Tile &tile, uint32_t samples, const SampleResult &result);
+  // Adds a subtree of samples that the tile does not have, and joins all neighbours. Throws nothing if tile.nodes has room.
+  void insert(Tile &tile, Node &&node) const;
+  // Empties a tile, whose next sample is then first_sample.
+  static void clear(Tile &tile, uint32_t first_sample);
   // Counts a sample that is dropped because it is not finite. Must be called before the samples of its batch are added. Calls
   // must be in order of sample and pixel.
   void drop(Tile &tile, const SampleAddress &address);
@@ -96,7 +110,7 @@ public:
   };
   // Returns the number of dropped samples and the first of them, among the samples that the film contains.
   Dropped dropped() const;
-  // Forgets the samples beyond the last power of two.
+  // Forgets the samples of a whole tile beyond the last power of two.
   void round_down(Tile &tile);
   // Returns the least and the largest number of samples of a pixel.
   std::pair<uint32_t, uint32_t> sample_range() const;
@@ -106,8 +120,8 @@ public:
   };
   // The fewest samples of a pixel from which an error can be estimated.
   static constexpr uint32_t kLeastSamples = 2;
-  // out: one record for each pixel of the tile. Returns the tile's number of samples per pixel, or 0 below kLeastSamples, where
-  // out stays unset.
+  // out: one record for each pixel of the tile. Returns the tile's number of samples per pixel; 0, and leaves out unset, if the
+  // tile is not whole or has less than kLeastSamples.
   uint32_t luminances(const Tile &tile, std::span<Luminance> out) const;
   // Whether all summed channels are finite.
   bool finite(const SampleResult &result) const;
@@ -117,6 +131,12 @@ public:
   size_t bytes() const;
   uint32_t width() const { return width_; }
   uint32_t height() const { return height_; }
+  uint32_t passes() const { return passes_; }
+  // Numbers of a pixel: in the sums of a node, in its differences of colours, and of sample 0.
+  struct Channels {
+    uint32_t summed, differences, first;
+  };
+  Channels channels_of_pixel() const { return {layout_.summed_channels, layout_.difference_channels, layout_.first_channels}; }
 
 private:
   // The channels that are stored, in order of pass.
@@ -135,7 +155,6 @@ private:
     uint32_t summed_channels = 0, first_channels = 0, difference_channels = 0;
   };
 
-  static void forget_joined(Tile &tile);
   void keep_first(Tile &tile, std::span<const SampleResult> results) const;
   void gather(std::span<const SampleResult> results, Sums &sums, float *brightest) const;
   void keep_differences(const Sums &earlier, uint32_t level, Sums &later) const;

@@ -132,6 +132,8 @@ void Film::read(Pass pass, std::span<float> out) const {
       float *target = out.data() + (size_t(at.y) * width_ + at.x) * width;
       if (tile->count == 0)
         std::fill_n(target, width, pass == Pass::Depth ? kNothing : 0.0f);
+      else if (of_first_sample(pass) && tile->first.empty())
+        std::fill_n(target, width, pass == Pass::Depth ? kNothing : 0.0f);
       else if (of_first_sample(pass))
         std::copy_n(tile->first.data() + size_t(pixel) * layout_.first_channels + layout_.at[uint32_t(pass)], width, target);
       else if (halved(pass) != pass)
@@ -147,9 +149,8 @@ void Film::read_means(Pass pass, const Tile &tile, uint32_t pixel, float *target
   const auto mean = [&](Pass of, uint32_t channel) {
     // Join the waiting sums, later and smaller ones first, as the tree would.
     double sum = 0.0;
-    for (uint32_t level = 0; level < tile.levels.size(); ++level)
-      if (tile.waits(level))
-        sum = tile.levels[level].channels[place + layout_.at[uint32_t(of)] + channel] + sum;
+    for (auto node = tile.nodes.rbegin(); node != tile.nodes.rend(); ++node)
+      sum = node->sums.channels[place + layout_.at[uint32_t(of)] + channel] + sum;
     return sum / double(tile.count);
   };
   const auto color = [&](Pass of) { return glm::dvec3(mean(of, 0), mean(of, 1), mean(of, 2)); };
@@ -172,14 +173,11 @@ void Film::read_means(Pass pass, const Tile &tile, uint32_t pixel, float *target
 template <class Value, class MeanOf, class DifferenceOf, class Part>
 Value Film::join_halves(const Tile &tile, MeanOf &&mean_of, DifferenceOf &&difference_of, Part &&part) {
   Value mean(0.0);
-  for (uint32_t level = uint32_t(tile.levels.size()); level-- > 0;) {
-    if (!tile.waits(level))
-      continue;
-    const Sums &sums = tile.levels[level];
-    const double share = double(1u << level) / double(tile.count);
-    const Value of_sums = mean_of(sums, level);
+  for (const Node &node : tile.nodes) {
+    const double share = double(1u << node.level) / double(tile.count);
+    const Value of_sums = mean_of(node.sums, node.level);
     // A single sample is compared with the mean of all samples before it.
-    part(share, level > 0 ? 0.5 * Value(difference_of(sums)) : of_sums - mean / (1.0 - share));
+    part(share, node.level > 0 ? 0.5 * Value(difference_of(node.sums)) : of_sums - mean / (1.0 - share));
     mean += share * of_sums;
   }
   return mean;
@@ -188,7 +186,7 @@ Value Film::join_halves(const Tile &tile, MeanOf &&mean_of, DifferenceOf &&diffe
 void Film::read_halves(Pass pass, const Tile &tile, uint32_t pixel, float *target) const {
   glm::dvec3 sum(0.0);
   const size_t place = size_t(pixel) * layout_.difference_channels + layout_.at[uint32_t(pass)];
-  if (tile.count >= kLeastSamples)
+  if (tile.whole() && tile.count >= kLeastSamples)
     join_halves<glm::dvec3>(
         tile, [&](const Sums &sums, uint32_t level) { return mean_color(halved(pass), sums, level, pixel); },
         [&](const Sums &sums) { return glm::make_vec3(sums.color_differences.data() + place); },
@@ -199,7 +197,7 @@ void Film::read_halves(Pass pass, const Tile &tile, uint32_t pixel, float *targe
 
 uint32_t Film::luminances(const Tile &tile, std::span<Luminance> out) const {
   const std::lock_guard lock(tile.mutex);
-  if (tile.count < kLeastSamples)
+  if (!tile.whole() || tile.count < kLeastSamples)
     return 0;
   for (uint32_t pixel = 0; pixel < tile.pixels(); ++pixel) {
     double variance = 0.0;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 namespace lancer {
 
@@ -21,16 +22,21 @@ LuminanceMap::LuminanceMap(const Film &film) : width(film.width()), height(film.
   for (std::vector<float> *values : {&mean, &variance, &brightest, &count})
     values->assign(pixels, 0.0f);
   std::vector<Film::Luminance> luminances;
-  // Find the unit.
-  double sum = 0.0;
+  // Find the unit. The sum has the order of pixels, so that it is the same for tiles of any size.
+  std::vector<double> means(pixels);
   for (size_t i = 0; i < film.tile_count(); ++i) {
-    luminances.resize(film.tile(i).pixels());
-    if (film.luminances(film.tile(i), luminances) == 0)
+    const Film::Tile &tile = film.tile(i);
+    luminances.resize(tile.pixels());
+    if (film.luminances(tile, luminances) == 0) {
       known = false;
-    else
-      for (const Film::Luminance &luminance : luminances)
-        sum += std::abs(luminance.mean);
+      continue;
+    }
+    for (uint32_t pixel = 0; pixel < tile.pixels(); ++pixel) {
+      const glm::uvec2 at = tile.place(pixel);
+      means[size_t(at.y) * width + at.x] = std::abs(luminances[pixel].mean);
+    }
   }
+  const double sum = std::accumulate(means.begin(), means.end(), 0.0);
   dark = !(sum > 0.0);
   unit = dark ? 1.0 : sum / double(pixels);
   // Lay out the tiles' statistics as a picture.

@@ -62,15 +62,17 @@ uint32_t tile_size(const Camera &camera, const IntegratorSettings &settings, uin
 
 } // namespace
 
-Session::Session(std::shared_ptr<const Scene> scene, const Camera &camera, const IntegratorSettings &settings)
-    : scene_(std::move(scene)), camera_(normalised(checked_memory(camera, settings), scene_->normalisation)),
-      settings_(settings),
+Session::Session(std::shared_ptr<const Scene> scene, const Camera &camera, const IntegratorSettings &settings,
+                 const Identity &identity)
+    : scene_(std::move(scene)),
+      camera_(normalised(checked_memory(camera, settings), scene_ ? scene_->normalisation : Normalisation())),
+      identity_(identity), settings_(settings),
       film_(camera.region_width, camera.region_height, tile_size(camera, settings, ThreadPool::resolved(settings.threads)),
             settings.passes, settings.refines),
-      pool_(settings.threads) {
+      pool_(scene_ ? settings.threads : 1) {
   settings_.cancel = &cancel_;
   splits_ = settings_.splits;
-  for (uint32_t i = 0; i < pool_.size(); ++i)
+  for (uint32_t i = 0; scene_ && i < pool_.size(); ++i)
     workers_.push_back(std::make_unique<TileWorker>(*scene_, camera_, settings_));
 }
 
@@ -85,8 +87,31 @@ void Session::require_ready() const {
     throw Error(Fault::State, "session: it was cancelled; its film can only be read");
 }
 
+void Session::require_scene() const {
+  if (!scene_)
+    throw Error(Fault::State, "session: it has no scene; it only joins parts");
+}
+
+void Session::require_parts() const {
+  if (!settings_.refines)
+    throw Error(Fault::State, "session: it was not created for parts of a picture; set refines in its settings");
+  if (!identity_.has_digest)
+    throw Error(Fault::State, "session: its scene has no digest, which names it in parts");
+  if (pool_.running())
+    throw Error(Fault::State, "session: a range is still being rendered");
+}
+
+const Scene &Session::scene() const {
+  require_scene();
+  return *scene_;
+}
+
 void Session::render(uint32_t first, uint32_t count) {
+  require_scene();
   require_ready();
+  for (size_t i = 0; i < film_.tile_count(); ++i)
+    if (!film_.tile(i).whole())
+      throw Error(Fault::State, "session: it has ranges of tiles that do not start at sample 0");
   const auto [least, most] = film_.sample_range();
   if (least != most)
     throw Error(Fault::State, "session: its pixels have different numbers of samples; it can only be refined");
@@ -99,10 +124,27 @@ void Session::render(uint32_t first, uint32_t count) {
   for (uint32_t tile = 0; tile < film_.tile_count(); ++tile)
     tasks_.push_back({tile, first + count});
   range_samples_ = uint64_t(count) * film_.width() * film_.height();
+  in_ranges_ = false;
   start();
 }
 
 bool Session::refine(double target, double confidence) {
+  require_scene();
+  const std::vector<lancer_range> ranges = plan(target, confidence);
+  if (ranges.empty())
+    return false;
+  tasks_.clear();
+  range_samples_ = 0;
+  for (const lancer_range &range : ranges) {
+    tasks_.push_back({range.tile, range.first + range.count});
+    range_samples_ += uint64_t(range.count) * film_.tile(range.tile).pixels();
+  }
+  in_ranges_ = false;
+  start();
+  return true;
+}
+
+std::vector<lancer_range> Session::plan(double target, double confidence) {
   require_ready();
   if (!film_.halves())
     throw Error(Fault::State, "session: it was not created to be refined; set refines in its settings");
@@ -121,17 +163,103 @@ bool Session::refine(double target, double confidence) {
   const double goal = bound > 0.0 ? target * error.error / bound : target;
   const Refinement refinement = plan_refinement(film_, map, relative, goal, settings_.samples);
   planned_samples_ = refinement.samples;
-  if (refinement.tiles.empty())
-    return false;
+  std::vector<lancer_range> ranges;
+  for (const uint32_t tile : refinement.tiles)
+    ranges.push_back({tile, film_.tile(tile).count, film_.tile(tile).count});
+  return ranges;
+}
+
+void Session::decide() {
+  require_scene();
+  require_ready();
   tasks_.clear();
   range_samples_ = 0;
-  for (const uint32_t tile : refinement.tiles) {
-    const uint32_t count = film_.tile(tile).count;
-    tasks_.push_back({tile, 2 * count});
-    range_samples_ += uint64_t(count) * film_.tile(tile).pixels();
-  }
+  in_ranges_ = false;
   start();
-  return true;
+}
+
+void Session::render(std::span<const lancer_range> ranges) {
+  require_scene();
+  require_parts();
+  require_ready();
+  // Check all ranges before the first tile changes.
+  std::vector<bool> chosen(film_.tile_count());
+  for (const lancer_range &range : ranges) {
+    const std::string what = "session: tile " + std::to_string(range.tile);
+    if (range.tile >= film_.tile_count())
+      bad_argument(what + " >= " + std::to_string(film_.tile_count()) + " tiles");
+    if (chosen[range.tile])
+      bad_argument(what + " has two ranges");
+    if (uint64_t(range.first) + range.count > (uint64_t(1) << 31))
+      bad_argument(what + ": " + std::to_string(uint64_t(range.first) + range.count) + " samples > 2147483648");
+    if (const Film::Tile &tile = film_.tile(range.tile); tile.count > 0 && tile.next() != range.first)
+      throw Error(Fault::State, what + ": first sample " + std::to_string(range.first) + " does not follow its sample " +
+                                    std::to_string(tile.next() - 1));
+    chosen[range.tile] = true;
+  }
+  tasks_.clear();
+  range_samples_ = 0;
+  for (const lancer_range &range : ranges) {
+    Film::Tile &tile = film_.tile(range.tile);
+    if (tile.pixels() == 0 || range.count == 0)
+      continue;
+    if (tile.count == 0)
+      Film::clear(tile, range.first);
+    tasks_.push_back({range.tile, range.first + range.count});
+    range_samples_ += uint64_t(range.count) * tile.pixels();
+  }
+  in_ranges_ = true;
+  start();
+}
+
+void Session::clear() {
+  if (pool_.running())
+    throw Error(Fault::State, "session: a range is still being rendered");
+  if (failed_)
+    throw Error(Fault::State, "session: a range failed; its film can only be read");
+  for (size_t i = 0; i < film_.tile_count(); ++i)
+    Film::clear(film_.tile(i), 0);
+  samples_ = counted_samples_ = 0;
+  planned_samples_ = 0.0;
+  cancelled_ = false;
+  added_ = {};
+  forgotten_ = of_workers();
+}
+
+size_t Session::part_size() const {
+  require_parts();
+  return lancer::part_size(film_);
+}
+
+void Session::write_part(std::span<std::byte> out) const {
+  require_parts();
+  lancer::write_part(film_, identity_, splits_, totals(), out);
+}
+
+void Session::add(const Part &part) {
+  require_parts();
+  identity_.require_same(part.identity());
+  const lancer_part &description = part.description();
+  const Splits splits{description.split_lights, description.split_paths};
+  const auto in_words = [](const Splits &of) {
+    return std::to_string(of.lights) + " lights and " + std::to_string(of.paths) + " paths";
+  };
+  if (splits.lights == 0 || splits.paths == 0 || splits.lights > 16 || splits.paths > 16)
+    bad_argument("part: its samples have " + in_words(splits));
+  const bool takes_over = !has_splits() && samples_ == 0;
+  if (!takes_over && splits != splits_)
+    bad_argument("part: its samples have " + in_words(splits) + ", the session's " + in_words(splits_));
+  added_ += part.add_to(film_);
+  samples_ += description.samples;
+  counted_samples_ += description.samples;
+  if (!takes_over)
+    return;
+  settings_.split_lights = splits.lights;
+  settings_.split_paths = splits.paths;
+  const std::lock_guard lock(mutex_);
+  splits_ = splits;
+  for (const auto &worker : workers_)
+    worker->set_splits(splits);
 }
 
 void Session::start() {
@@ -145,7 +273,7 @@ void Session::start() {
   // Before the first sample, find the background and the splits, also after a range that ended early.
   pilot_.reset();
   background_found_.reset();
-  if (film_.sample_range().second == 0) {
+  if (!prepared_) {
     background_found_ = std::make_unique<std::latch>(1);
     if (finds_splits())
       pilot_ = std::make_unique<Pilot>(*scene_, camera_, background_, settings_, pool_.size());
@@ -169,6 +297,8 @@ void Session::work(uint32_t thread) {
     look_for_background(thread);
   if (pilot_)
     find_splits(thread);
+  if (thread == 0 && !cancel_)
+    prepared_ = true;
   while (!cancel_) {
     const size_t task = next_task_.fetch_add(1);
     if (task >= tasks_.size())
@@ -215,23 +345,24 @@ void Session::settle() {
   range_samples_ = 0;
 }
 
-RayCounts Session::rays() const {
-  RayCounts sum;
+Totals Session::of_workers() const {
+  Totals sum;
   for (const auto &worker : workers_)
-    sum += worker->rays();
+    sum += {worker->rays(), worker->vertices(), worker->energy()};
+  return sum;
+}
+
+// Returns the totals of the film's samples, and of samples that a stopped range has dropped.
+Totals Session::totals() const {
+  Totals sum = of_workers();
+  sum -= forgotten_;
+  sum += added_;
   return sum;
 }
 
 bool Session::finds_splits() const {
   return settings_.kind() == IntegratorKind::Path && settings_.samples >= Pilot::kLeastPlanned && settings_.split_lights == 0 &&
          settings_.split_paths == 0;
-}
-
-uint64_t Session::vertices() const {
-  uint64_t sum = 0;
-  for (const auto &worker : workers_)
-    sum += worker->vertices();
-  return sum;
 }
 
 double Session::seconds() const {
@@ -254,17 +385,19 @@ Session::State Session::wait(uint32_t milliseconds, Progress &progress) {
   }
   progress.samples = samples_;
   progress.seconds = seconds();
-  const RayCounts counts = rays();
+  const RayCounts counts = totals().rays;
   progress.rays = counts.camera + counts.bounce + counts.shadow;
   const double done_samples = double(progress.samples - samples_before_);
   progress.fraction = range_samples_ ? std::min(1.0, done_samples / double(range_samples_)) : 1.0;
   if (!done)
     return State::Running;
-  if (stop_ && !cancelled_) {
+  if (stop_ && !cancelled_ && !in_ranges_) {
     settle();
     progress.samples = samples_;
   }
-  cancelled_ = cancelled_ || (cancel_ && progress.samples - samples_before_ < range_samples_);
+  // A search for the splits that is cancelled leaves nothing to continue.
+  cancelled_ =
+      cancelled_ || (cancel_ && (progress.samples - samples_before_ < range_samples_ || (tasks_.empty() && !prepared_)));
   return cancelled_ ? State::Cancelled : State::Done;
 }
 
@@ -280,6 +413,7 @@ void Session::read(Pass pass, std::span<float> out) const {
 }
 
 SampleResult Session::replay(const SampleAddress &address, std::vector<PathVertex> &vertices) {
+  require_scene();
   IntegratorSettings settings = settings_;
   settings.cancel = nullptr;
   settings.splits = splits_;
@@ -300,13 +434,11 @@ SessionError Session::error(double confidence) const {
     samples += double(map.count[i]);
   }
   std::tie(result.least_samples, result.most_samples) = film_.sample_range();
-  Energy energy;
-  for (const auto &worker : workers_)
-    energy += worker->energy();
+  const Energy energy = totals().energy;
   // Energy includes samples that a stopped range has dropped.
   light *= double(counted_samples_) / std::max(samples, 1.0);
   if (light > 0.0) {
-    result.clipped = energy.clipped / (light + energy.clipped);
+    result.clipped = energy.clipped.value() / (light + energy.clipped.value());
     result.missing = energy.beyond() / light;
   }
   result.planned_samples = planned_samples_;
@@ -317,18 +449,19 @@ SessionStatistics Session::statistics() const {
   SessionStatistics statistics;
   statistics.render_seconds = seconds();
   statistics.samples = samples_;
-  statistics.rays = rays();
-  statistics.vertices = vertices();
+  const Totals sum = totals();
+  statistics.rays = sum.rays;
+  statistics.vertices = sum.vertices;
   const Film::Dropped dropped = film_.dropped();
   statistics.invalid_samples = dropped.samples;
   statistics.first_invalid = dropped.first;
   statistics.threads = pool_.size();
   statistics.film_bytes = film_.bytes();
-  if (samples_ > 0) {
+  if (samples_ > 0 || prepared_) {
     const std::lock_guard lock(mutex_);
     statistics.splits = splits_;
   }
-  statistics.kernel = workers_.front()->name();
+  statistics.kernel = workers_.empty() ? "joined" : workers_.front()->name();
   return statistics;
 }
 

@@ -3,6 +3,7 @@
 
 #include "lancer.h"
 #include "render/film.h"
+#include "render/parts.h"
 #include "render/picture_error.h"
 #include "render/pilot.h"
 #include "render/thread_pool.h"
@@ -47,8 +48,10 @@ struct SessionError {
 
 class Session {
 public:
-  // camera in the user's units. Throws Error when camera, settings or memory do not allow the film.
-  Session(std::shared_ptr<const Scene> scene, const Camera &camera, const IntegratorSettings &settings);
+  // camera in the user's units. scene: null for a session that joins parts and cannot render. Throws Error when camera,
+  // settings or memory do not allow the film.
+  Session(std::shared_ptr<const Scene> scene, const Camera &camera, const IntegratorSettings &settings,
+          const Identity &identity = {});
   ~Session();
 
   // Starts samples first ... first + count - 1; throws Error when first does not follow the last sample, or while another range
@@ -57,6 +60,22 @@ public:
   // Starts a round that doubles the samples of some pixels: plan_refinement(). Returns false when nothing can be doubled.
   // confidence: of the upper bound that has to fall below target.
   bool refine(double target, double confidence);
+  // Returns the ranges of the round that refine() would start.
+  std::vector<lancer_range> plan(double target, double confidence);
+
+  // Parts of a picture, for sessions that refine.
+
+  // Starts the search for the splits without any samples.
+  void decide();
+  // Starts ranges of different tiles, each anywhere if its tile is empty, otherwise at its next sample.
+  void render(std::span<const lancer_range> ranges);
+  // Forgets all samples, but not the splits.
+  void clear();
+  size_t part_size() const;
+  void write_part(std::span<std::byte> out) const;
+  // Throws Error, and changes nothing, if the part does not fit.
+  void add(const Part &part);
+
   enum class State { Done, Running, Cancelled };
   State wait(uint32_t milliseconds, Progress &progress);
   void cancel() { cancel_ = true; }
@@ -70,26 +89,34 @@ public:
   const Film &film() const { return film_; }
   SessionStatistics statistics() const;
   SessionError error(double confidence) const;
-  const Scene &scene() const { return *scene_; }
+  bool only_joins() const { return !scene_; }
+  // Throws Error for a session that only joins parts.
+  const Scene &scene() const;
   const Camera &camera() const { return camera_; }
   // Computes one sample alone. Must not be called while a range runs.
   SampleResult replay(const SampleAddress &address, std::vector<PathVertex> &vertices);
 
 private:
   void require_ready() const;
+  void require_scene() const;
+  void require_parts() const;
   void start();
   void work(uint32_t thread);
   void look_for_background(uint32_t thread);
   void find_splits(uint32_t thread);
   void settle();
   double seconds() const;
-  RayCounts rays() const;
-  uint64_t vertices() const;
+  Totals of_workers() const;
+  Totals totals() const;
 
-  std::shared_ptr<const Scene> scene_;
-  Camera camera_; // normalised
   // Whether the session has to find how samples split.
   bool finds_splits() const;
+  // Whether the splits are known.
+  bool has_splits() const { return !finds_splits() || prepared_; }
+
+  std::shared_ptr<const Scene> scene_; // null: the session only joins parts
+  Camera camera_;                      // normalised
+  Identity identity_;
 
   IntegratorSettings settings_;
   Film film_;
@@ -106,6 +133,9 @@ private:
   std::unique_ptr<Pilot> pilot_; // set while a range starts by finding the splits
   Background background_;
   std::unique_ptr<std::latch> background_found_; // set while a range starts by searching the background
+  std::atomic<bool> prepared_{false};            // background and splits have been found
+  bool in_ranges_ = false;                       // the last range was one of render(ranges)
+  Totals added_, forgotten_;                     // of parts; of the workers' samples before clear()
   double planned_samples_ = 0.0;
   bool cancelled_ = false, failed_ = false;
   double seconds_before_ = 0.0;

@@ -37,14 +37,14 @@ void TileWorker::render(Film &film, Film::Tile &tile, uint32_t end, const Backgr
       covered_.push_back(pixel);
   const auto covered = uint32_t(covered_.size());
   if (covered == 0) {
-    const uint32_t samples = end - tile.count;
+    const uint32_t samples = end - tile.next();
     film.add_even(tile, samples, background.sample);
     return count(uint64_t(samples) * pixels);
   }
   const uint32_t per_batch = std::max(1u, std::min(kBatch / covered, kMostBatches * kBatch / pixels));
-  while (tile.count < end && !settings_.cancelled()) {
+  while (tile.next() < end && !settings_.cancelled()) {
     // Render the next samples of all covered pixels.
-    const uint32_t samples = std::min(per_batch, end - tile.count);
+    const uint32_t samples = std::min(per_batch, end - tile.next());
     render_batch(tile, samples);
     if (settings_.cancelled())
       return;
@@ -60,9 +60,11 @@ void TileWorker::render_batch(const Film::Tile &tile, uint32_t samples) {
   for (uint32_t s = 0; s < samples; ++s)
     for (const uint32_t pixel : covered_) {
       const glm::uvec2 place = tile.place(pixel);
-      addresses_.push_back({place.x, place.y, tile.count + s});
+      addresses_.push_back({place.x, place.y, tile.next() + s});
     }
   results_.resize(addresses_.size());
+  rays_before_ = integrator_->counts();
+  vertices_before_ = integrator_->vertices();
   batch_energy_ = {};
   // Large tiles pass through the integrator in several batches.
   for (size_t begin = 0; begin < addresses_.size(); begin += kBatch) {
@@ -96,8 +98,9 @@ std::span<const SampleResult> TileWorker::all_pixels(const Film::Tile &tile, uin
 
 void TileWorker::publish() {
   const std::lock_guard lock(mutex_);
-  rays_ = integrator_->counts();
-  vertices_ = integrator_->vertices();
+  rays_ += integrator_->counts();
+  rays_ -= rays_before_;
+  vertices_ += integrator_->vertices() - vertices_before_;
   energy_ += batch_energy_;
 }
 

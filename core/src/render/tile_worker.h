@@ -37,6 +37,8 @@ private:
   std::vector<uint32_t> covered_; // pixels of the tile
   std::vector<SampleAddress> addresses_;
   std::vector<SampleResult> results_, spread_; // of addresses_; of all pixels
+  RayCounts rays_before_;                      // of the integrator, before the batch
+  uint64_t vertices_before_ = 0;
   Energy batch_energy_;
   // Members that other threads read.
   mutable std::mutex mutex_;

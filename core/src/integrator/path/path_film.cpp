@@ -42,7 +42,7 @@ void PathFilm::clamp(uint32_t sample) {
     float share = 1.0f;
     if (const float top = largest(glm::abs(found)); top > settings_.clamp_indirect) {
       factor = share = settings_.clamp_indirect / top;
-      energy.clip(double(luminance(found)) * (1.0 - double(share)) / double(paths));
+      energy.clip(luminance(found) * (1.0f - share) / float(paths));
     }
     all += found;
     kept += found * share;
@@ -72,7 +72,7 @@ void PathFilm::add(const Path &path, const glm::vec3 &radiance, bool environment
     const float top = largest(glm::abs(radiance)), limit = settings_.clamp_indirect / float(path.sharers);
     const glm::vec3 seen = indirect && limit > 0.0f && top > limit ? radiance * (limit / top) : radiance;
     if (!hidden) {
-      energy.clip(double(luminance(radiance - seen)));
+      energy.clip(luminance(radiance - seen));
       result.radiance += seen;
     }
     passes.add_seen(result, seen, environment);

@@ -152,7 +152,7 @@ public:
   void begin() {
     samples_.clear();
     stage_ = 0;
-    before_[0] = before_[1] = 0.0;
+    before_[0] = before_[1] = {};
   }
   // Whether note() must be called in this turn of the queues. Each transparent surface delays a path by one turn. The path's
   // light then counts as that of a later bounce, so the estimate is too large rather than too small.
@@ -175,24 +175,28 @@ public:
   template <class Light> void end(Light &&light, Energy &energy) const {
     if (stage_ == 0)
       return;
-    const double all = sum(light);
-    energy.before_last += (stage_ == 2 ? before_[1] : all) - before_[0];
-    energy.last += stage_ == 2 ? all - before_[1] : 0.0;
+    const ExactSum all = sum(light);
+    energy.before_last += stage_ == 2 ? before_[1] : all;
+    energy.before_last -= before_[0];
+    if (stage_ == 2) {
+      energy.last += all;
+      energy.last -= before_[1];
+    }
   }
 
 private:
   // Skips samples that are not finite, because the film drops them.
-  template <class Light> double sum(Light &&light) const {
-    double result = 0.0;
+  template <class Light> ExactSum sum(Light &&light) const {
+    ExactSum result;
     for (const uint32_t sample : samples_) {
       const float level = luminance(light(sample));
-      result += std::isfinite(level) ? double(level) : 0.0;
+      result += std::isfinite(level) ? level : 0.0f;
     }
     return result;
   }
 
   uint32_t max_bounces_, stage_ = 0;
-  double before_[2] = {};
+  ExactSum before_[2];
   std::vector<uint32_t> samples_; // of the unfinished paths
 };
 
