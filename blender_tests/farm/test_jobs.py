@@ -1,5 +1,6 @@
-"""The description of a job: its tasks, what is missing, what is refused, and its plain lines."""
+"""The description of a job: its tasks, what is missing, what is refused, and its plain lines; the command that writes forms."""
 
+import argparse
 import json
 import os
 import subprocess
@@ -7,7 +8,7 @@ import subprocess
 import pytest
 from farm_programs import Programs, commands
 
-from addon.farm import lines
+from addon.farm import flamenco, frames_command, lines, openjd, slurm
 from addon.farm.frame_files import read_frames, written
 from addon.farm.in_blender import CHECK, PREPARE
 from addon.farm.job import Frames, JobError, Still, load, of_fields
@@ -208,3 +209,80 @@ def test_lines_of_a_still_merge_only_whole_sets_of_parts(programs, tmp_path):
 def test_lines_take_no_arguments(programs, tmp_path):
     assert run_lines(programs.frames(), tmp_path, "--help") == 2
     assert not programs.starts()
+
+
+def command(*arguments):
+    """Run the command as `python -m addon.farm frames` does, and return its exit code."""
+    parser = argparse.ArgumentParser()
+    frames_command.add_parser(parser.add_subparsers(required=True))
+    read = parser.parse_args(["frames", *map(str, arguments)])
+    return read.run(read)
+
+
+@pytest.mark.parametrize("kind", ["frames", "still"])
+def test_command_writes_each_form(programs, kind, tmp_path):
+    job = getattr(programs, kind)()
+    job.save(tmp_path / "job.json")
+    texts = {
+        "openjd": openjd.text(job, job.tasks(), tmp_path),
+        "slurm": slurm.text(job, job.tasks()),
+        "flamenco": flamenco.text(job, job.tasks()),
+        "lines": lines.text(job, job.tasks()),
+    }
+    for form, text in texts.items():
+        assert command(tmp_path / "job.json", "--form", form, "--output", tmp_path / "form") == 0
+        assert (tmp_path / "form").read_text() == text
+    assert list(texts) == list(frames_command.FORMS)
+
+
+def test_command_takes_options_for_a_description(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    options = ["--file", "a.blend", "--frames", "1-4", "--pictures", "//f_#.png", "--chunk", "2", "--extra=-F", "--extra=PNG"]
+    assert command(*options, "--save", "job.json") == 0
+    saved = Frames(str(tmp_path / "a.blend"), "1-4", "//f_#.png", chunk=2, extra=("-F", "PNG"))
+    assert load("job.json") == saved
+    options = ["--snapshot", "a.npz", "--samples", "8", "--parts", "2", "--part-files", "p/#.npz", "--picture", "a.exr"]
+    assert command(*options, "--save", "job.json") == 0
+    assert load("job.json") == Still("a.npz", 8, 2, "p/#.npz", "a.exr").resolved(tmp_path)
+
+
+def test_a_description_is_relative_to_its_folder(tmp_path, capsys):
+    (tmp_path / "shots").mkdir()
+    Frames("a.blend", "1,2", "out/f_#.png").save(tmp_path / "shots" / "job.json")
+    assert command(tmp_path / "shots" / "job.json", "--missing") == 1
+    assert capsys.readouterr().out.split() == [str(tmp_path / "shots" / "out" / name) for name in ("f_1.png", "f_2.png")]
+
+
+def test_command_tells_and_writes_what_is_missing(programs, tmp_path, capsys):
+    job = programs.frames()
+    job.save(tmp_path / "job.json")
+    for file in job.tasks()[0].files + job.tasks()[1].files[:1]:
+        os.makedirs(os.path.dirname(file), exist_ok=True)
+        with open(file, "w") as picture:
+            picture.write("picture")
+    assert command(tmp_path / "job.json", "--missing") == 1
+    assert capsys.readouterr().out.splitlines() == [*job.tasks()[1].files[1:], *job.tasks()[2].files]
+    assert command(tmp_path / "job.json", "--missing", "--form", "slurm", "--output", tmp_path / "job.sh") == 0
+    assert "#SBATCH --array=2,3\n" in (tmp_path / "job.sh").read_text()
+    assert run_lines(job, tmp_path) == 0
+    assert command(tmp_path / "job.json", "--missing") == 0
+    assert not capsys.readouterr().out
+    assert command(tmp_path / "job.json", "--missing", "--form", "lines", "--output", tmp_path / "rest.sh") == 0
+    assert not (tmp_path / "rest.sh").exists() and "Nothing is missing" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "arguments, said",
+    [
+        (["job.json"], "--form"),
+        (["job.json", "--form", "lines"], "--output"),
+        (["job.json", "--chunk", "3", "--missing"], "chunk"),
+        (["none.json", "--missing"], "none.json"),
+        (["--file", "a.blend", "--frames", "x", "--pictures", "f_#.png", "--missing"], "frames: 'x'"),
+    ],
+)
+def test_command_refuses_wrong_use(arguments, said, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    of_fields(SHOT).save("job.json")
+    assert command(*arguments) == 2
+    assert said in capsys.readouterr().err
