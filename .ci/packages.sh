@@ -56,6 +56,11 @@ want_test() {
   want xdotool command_is_there xdotool
   want imagemagick command_is_there import
   want libgl1-mesa-dri file_is_there "/usr/lib/*/dri/*_dri.so /usr/lib/dri/*_dri.so"
+  want nodejs command_is_there node
+  want munge file_is_there "/usr/sbin/munged"
+  want slurmctld file_is_there "/usr/sbin/slurmctld"
+  want slurmd file_is_there "/usr/sbin/slurmd"
+  want slurm-client command_is_there sbatch
 }
 
 # A compiler with libFuzzer.

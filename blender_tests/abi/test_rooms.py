@@ -10,7 +10,7 @@ ADDON = Path(ROOT, "addon")
 # A file imports only from its own room and from rooms of lower ranks. The top level has only __init__.py.
 RANKS = (
     "bindings messages host",
-    "measure denoise checks export",
+    "measure denoise checks farm export",
     "viewport settings",
     "engine",
     "operators",
@@ -18,7 +18,7 @@ RANKS = (
     "__init__",
 )
 RANK = {name: rank for rank, names in enumerate(RANKS) for name in names.split()}
-WITHOUT_BLENDER = ("bindings", "messages", "checks", "measure")
+WITHOUT_BLENDER = ("bindings", "messages", "checks", "measure", "farm")
 
 
 def place_of(path):

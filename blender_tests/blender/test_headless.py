@@ -8,34 +8,12 @@ import blenders
 import pytest
 from blenders import PROGRAM
 
-INSTALL = """
-import bpy, sys
-bpy.ops.preferences.addon_install(filepath=sys.argv[-1])
-bpy.ops.preferences.addon_enable(module="lancer")
-bpy.ops.wm.save_userpref()
-"""
-
 
 @pytest.fixture(scope="module")
 def home(tmp_path_factory):
     """Return a user's folder with the add-on installed from its zip."""
     folder = tmp_path_factory.mktemp("home")
-    archive = blenders.zip_for_blender_3()
-    command = [
-        blenders.program(),
-        "-b",
-        "--factory-startup",
-        "--python-exit-code",
-        "3",
-        "--python-expr",
-        INSTALL,
-        "--",
-        archive,
-    ]
-    done = subprocess.run(
-        command, env=blenders.environment(folder), capture_output=True, text=True, errors="replace", cwd=folder
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
+    blenders.install(folder)
     return folder
 
 

@@ -15,6 +15,12 @@ from blender_server import BlenderServer
 # Tools ask for Blenders, too, where there is no pytest.
 ROOT = str(Path(__file__).resolve().parents[2])
 MODULE, PROGRAM = "bpy module", "Blender program"
+_INSTALL = """
+import bpy, sys
+bpy.ops.preferences.addon_install(filepath=sys.argv[-1])
+bpy.ops.preferences.addon_enable(module="lancer")
+bpy.ops.wm.save_userpref()
+"""
 _servers = {}
 
 
@@ -109,3 +115,17 @@ def zip_for_blender_3():
     found = sorted(glob.glob(pattern), key=os.path.getmtime)
     assert found, "`make addon` gave no zip for Blender 3"
     return found[-1]
+
+
+def install(folder):
+    """Install the add-on from its zip into a user's folder of Debian's Blender."""
+    start = [program(), "-b", "--factory-startup", "--python-exit-code", "3"]
+    done = subprocess.run(
+        [*start, "--python-expr", _INSTALL, "--", zip_for_blender_3()],
+        env=environment(folder),
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        errors="replace",
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
