@@ -197,7 +197,7 @@ python-run: packages-run
 	@$(PYTHON) .ci/environment.py $(VENV) run
 
 python-test: packages-test
-	@$(PYTHON) .ci/environment.py $(VENV) run test
+	@$(PYTHON) .ci/environment.py $(VENV) run test pictures
 
 python-zig: packages-run
 	@$(PYTHON) .ci/environment.py build/zig zig

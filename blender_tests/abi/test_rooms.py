@@ -9,16 +9,17 @@ from conftest import ROOT
 ADDON = Path(ROOT, "addon")
 # A file imports only from its own room and from rooms of lower ranks. The top level has only __init__.py.
 RANKS = (
-    "bindings messages host",
+    "bindings messages",
+    "host",
     "measure denoise checks export",
-    "viewport settings",
+    "viewport settings farm",
     "engine",
     "operators",
     "ui",
     "__init__",
 )
 RANK = {name: rank for rank, names in enumerate(RANKS) for name in names.split()}
-WITHOUT_BLENDER = ("bindings", "messages", "checks", "measure")
+WITHOUT_BLENDER = ("bindings", "messages", "checks", "measure", "farm")
 
 
 def place_of(path):

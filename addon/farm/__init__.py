@@ -1,0 +1,1 @@
+"""Renders without Blender, on this machine and on others. No bpy."""
