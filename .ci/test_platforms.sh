@@ -122,9 +122,9 @@ linux_x64() {
   cpp linux-x64 "$@"
   stage linux-x64
   python_tests linux-x64 "$python"
-  say "linux-x64: the zips in the Blenders that are here"
+  say "linux-x64: the zips in the Blenders that are here, and the wheel"
   "$python" .ci/package.py "$places" linux-x64
-  in_blender "" blender/test_install.py blender/test_repository.py
+  in_blender "" blender/test_install.py blender/test_repository.py farm/test_wheel.py
   next_debian
   say "linux-x64: the zips and Rendered shading in the next Debian's Blender"
   in_blender "$PWD/.ci/next_blender.sh" blender/test_install.py blender/test_repository.py blender/test_viewport.py \
