@@ -1,8 +1,8 @@
 """The library from the wheel that this extension carries, where Blender's own copy of the wheel is missing.
 
 Blender unpacks each wheel once for all extensions of a user and compares names and versions only. Its copy is missing after
-Update All of other extensions (4.2 to 5.0), after an update whose old library was in use (Windows), for the older of two
-installations, and for another build of the same version.
+Update All of other extensions (4.2 to 5.0), after an update whose old library was in use (Windows), and for another build of
+the same version.
 """
 
 import contextlib
