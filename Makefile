@@ -154,7 +154,10 @@ corpus: packages-run $(if $(DENOISED),python-charts,python-run) build ## render 
 addon: packages-run python-run build ## build the zips for this machine: build/lancer-VERSION-PLATFORM.zip (Blender 4.2+) and -blender3.zip (3.x)
 	@$(python) .ci/package.py
 
-addons: packages-run python-run python-zig ## build the zips for Linux, Windows and macOS into build/addons: make addons [ONLY=windows-x64]
+wheel: packages-run python-run build ## build a wheel for Python without Blender on this machine: build/lancer-VERSION-py3-none-PLATFORM.whl
+	@$(python) .ci/python_wheel.py
+
+addons: packages-run python-run python-zig ## build zips, wheels and Blender's repository of Linux, Windows and macOS: make addons [ONLY=windows-x64]
 	@for platform in $(or $(ONLY),$(platforms)); do \
 	  echo "== core for $$platform"; JOBS=$(JOBS) .ci/cross.sh $$platform "$(zig)" lancer || exit 1; done
 	@LANCER_ZIG="$(zig)" $(python) .ci/package.py build/platforms $(or $(ONLY),$(platforms))
@@ -197,7 +200,7 @@ python-run: packages-run
 	@$(PYTHON) .ci/environment.py $(VENV) run
 
 python-test: packages-test
-	@$(PYTHON) .ci/environment.py $(VENV) run test
+	@$(PYTHON) .ci/environment.py $(VENV) run test pictures
 
 python-zig: packages-run
 	@$(PYTHON) .ci/environment.py build/zig zig

@@ -1,6 +1,7 @@
 #!/bin/sh
 # next_blender.sh ARGUMENT...    runs the next Debian's Blender in the root that test_platforms.sh makes. The project and /tmp
-# have the same paths inside as outside, and there is no network. The mounts belong to the process and end with it.
+# have the same paths inside as outside, and the only network is the machine itself. The mounts belong to the process and end
+# with it.
 set -eu
 
 project=$(cd "$(dirname "$0")/.." && pwd)
@@ -13,6 +14,7 @@ $sudo unshare --mount true 2>/dev/null || inside=unchanged
 exec $sudo unshare --mount --propagation $inside --net sh -euc '
   root=$1 project=$2 folder=$3 owner=$4
   shift 4
+  ip link set lo up
   mount --rbind /dev "$root/dev"
   mount -t proc proc "$root/proc"
   mount --bind /tmp "$root/tmp"

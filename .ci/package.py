@@ -1,130 +1,111 @@
-"""Builds the zips that Blender installs from addon/, each with one platform's library only.
+"""Builds the zips that Blender installs from addon/, each for one platform, and the repository of the extensions.
 
-For each platform there is an extension (4.2 and newer) and a classic add-on (3.x).
+An extension (4.2 and newer) carries the library in a wheel, as Blender's own platform demands; in a classic add-on (3.x) it is
+a file.
 
     package.py                      for this machine, with the library in addon/lib, into build/
     package.py FOLDER PLATFORM...   with the libraries in FOLDER/PLATFORM/lib, into build/addons/; LANCER_ZIG: their compiler
 
-The same files give the same bytes: entries are sorted and have no date."""
+build/addons is an extension repository: Blender installs from it and updates, from a web server or a shared folder. The same
+files give the same bytes: entries are sorted and have no date."""
 
-import ast
-import hashlib
 import os
-import platform
 import subprocess
 import sys
 import zipfile
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
-ADDON = ROOT / "addon"
-BUILD = ROOT / "build"
+import contents
+import python_wheel
+
 OLDEST_DATE = (1980, 1, 1, 0, 0, 0)
-LIBRARIES = {"linux": "liblancer.so", "windows": "lancer.dll", "macos": "liblancer.dylib"}
-GLM_NOTICE = Path("/usr/share/doc/libglm-dev/copyright")
-# Licence notices of the C++ and C libraries that zig links into the library, by their path in zig's package.
-ZIG_NOTICES = {
-    "libc++": "libcxx/LICENSE.TXT",
-    "libc++abi": "libcxxabi/LICENSE.TXT",
-    "libunwind": "libunwind/LICENSE.TXT",
-    "compiler-rt": "../LICENSE",
-}
-SYSTEM_NOTICES = {"linux": {"glibc": "libc/glibc/LICENSES"}, "windows": {"mingw-w64": "libc/mingw/COPYING"}, "macos": {}}
+# Folders of the repository with what is no extension.
+CLASSIC, WHEELS = "blender3", "wheels"
 
 
-def read_version():
-    """Returns the release from bl_info, without importing the add-on, as Blender 3.x reads it."""
-    for node in ast.parse((ADDON / "__init__.py").read_text()).body:
-        if isinstance(node, ast.Assign) and any(getattr(target, "id", None) == "bl_info" for target in node.targets):
-            return ".".join(map(str, ast.literal_eval(node.value)["version"]))
-    sys.exit("addon/__init__.py has no bl_info, which Blender 3.x needs to install a zip.")
-
-
-def this_platform():
-    machine = {"x86_64": "x64", "amd64": "x64", "aarch64": "arm64"}.get(platform.machine().lower(), platform.machine())
-    return f"linux-{machine}"
-
-
-def manifest(version, tag):
-    lines = [line for line in (ADDON / "blender_manifest.toml").read_text().splitlines() if not line.startswith("#")]
+def manifest(version, tag, wheel):
+    lines = (contents.ADDON / "blender_manifest.toml").read_text().splitlines()
+    lines = [line for line in lines if not line.startswith("#")]
     place = lines.index('id = "lancer"') + 1
-    return "\n".join([*lines[:place], f'version = "{version}"', f'platforms = ["{tag}"]', *lines[place:], ""]).encode()
+    made = [f'version = "{version}"', f'platforms = ["{tag}"]', f'wheels = ["./wheels/{wheel}"]']
+    return "\n".join([*lines[:place], *made, *lines[place:], ""]).encode()
 
 
-def marked(library):
-    """Returns the library's name with a hash of its content, so that an update of the add-on loads the new library."""
-    return f"{library.stem}-{hashlib.sha256(library.read_bytes()).hexdigest()[:12]}{library.suffix}"
-
-
-def notices(tag, zig):
-    """Returns name in the zip -> file: the notices that the licences of the linked parts require."""
-    found = {"GLM": GLM_NOTICE}
-    if zig:
-        sources = Path(zig).resolve().parent / "lib"
-        system = SYSTEM_NOTICES[tag.split("-")[0]]
-        found |= {name: sources / place for name, place in (ZIG_NOTICES | system).items()}
-        missing = [str(path) for path in found.values() if not path.is_file()]
-        if missing:
-            sys.exit("Licence notices are missing: " + ", ".join(missing))
-    return {f"licenses/{name}.txt": path for name, path in found.items() if path.is_file()}
-
-
-def list_files(version, tag, library, zig):
-    """Returns path inside the add-on -> its bytes."""
-    if not library.is_file():
-        sys.exit(f"{library} is missing: build it first.")
-    files = {
-        path.relative_to(ADDON).as_posix(): path.read_bytes()
-        for path in ADDON.rglob("*")
-        if path.is_file() and path.parent.name not in ("__pycache__", "lib") and path.suffix != ".md" and path.name[0] != "."
-    }
-    files["blender_manifest.toml"] = manifest(version, tag)
-    files[f"lib/{marked(library)}"] = library.read_bytes()
-    files["LICENSE"] = (ROOT / "LICENSE").read_bytes()
-    return files | {name: path.read_bytes() for name, path in notices(tag, zig).items()}
+def common_files(library, notices):
+    """Returns path inside the add-on -> its bytes, of what both kinds of zips have."""
+    files = contents.addon_files() | {python_wheel.NAME_FILE: f"{library[0]}\n".encode()}
+    files["LICENSE"] = (contents.ROOT / "LICENSE").read_bytes()
+    return files | {f"licenses/{name}": data for name, data in notices.items()}
 
 
 def write_zip(path, files):
+    path.parent.mkdir(parents=True, exist_ok=True)
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
         for name, data in sorted(files.items()):
             entry = zipfile.ZipInfo(name, OLDEST_DATE)
             entry.compress_type = zipfile.ZIP_DEFLATED
             entry.external_attr = (0o755 if name.endswith((".so", ".dylib", ".dll")) else 0o644) << 16
             archive.writestr(entry, data)
-    print(f"{path.relative_to(ROOT)}  {path.stat().st_size / 1e6:.1f} MB", flush=True)
+    contents.told(path)
 
 
-def validate(path):
-    """Validates the zip with Blender's own packager, which comes with the bpy module."""
+def packager(*arguments):
+    """Runs Blender's own packager, which comes with the bpy module; ends the program if it refuses."""
     tools = sorted(Path(sys.prefix).glob("lib/python*/site-packages/bpy/*/scripts/addons_core/bl_pkg/cli/blender_ext.py"))
     if not tools:
-        sys.exit("Blender's packager is not in the bpy module: the zip could not be validated.")
-    result = subprocess.run([sys.executable, tools[0], "validate", path], capture_output=True, text=True)
-    if result.returncode:
-        sys.exit(f"Blender refuses {path.name}:\n{result.stdout}{result.stderr}")
+        sys.exit("Blender's packager is not in the bpy module: zips cannot be validated.")
+    result = subprocess.run([sys.executable, tools[0], *arguments], capture_output=True, text=True)
+    if result.returncode or "WARNING" in result.stdout or "ERROR" in result.stdout:
+        sys.exit(f"Blender's packager refuses {' '.join(map(str, arguments))}:\n{result.stdout}{result.stderr}")
 
 
-def package(folder, version, tag, library, zig=None):
-    folder.mkdir(parents=True, exist_ok=True)
-    for old in folder.glob(f"lancer-*-{tag}*.zip"):
+def index(folder):
+    """Makes the folder a repository of the extensions in it: index.json for Blender, index.html for browsers."""
+    packager("server-generate", "--repo-dir", folder, "--html")
+    contents.told(folder / "index.json")
+
+
+def package(folder, version, tag, library, notices, wheel, classic):
+    """Writes the two zips. wheel: its file name and bytes. classic: the folder of the classic zip."""
+    for old in (*folder.glob(f"lancer-*-{tag}.zip"), *classic.glob(f"lancer-*-{tag}-blender3.zip")):
         old.unlink()
-    files = list_files(version, tag, library, zig)
-    extension = folder / f"lancer-{version}-{tag}.zip"
-    write_zip(extension, files)
-    validate(extension)
+    files = common_files(library, notices)
     del files["blender_manifest.toml"]
-    write_zip(folder / f"lancer-{version}-{tag}-blender3.zip", {f"lancer/{name}": data for name, data in files.items()})
+    extension = folder / f"lancer-{version}-{tag}.zip"
+    carried = {"blender_manifest.toml": manifest(version, tag, wheel[0]), f"wheels/{wheel[0]}": wheel[1]}
+    write_zip(extension, files | carried)
+    packager("validate", extension)
+    files[f"lib/{library[0]}"] = library[1]
+    write_zip(classic / f"lancer-{version}-{tag}-blender3.zip", {f"lancer/{name}": data for name, data in files.items()})
+
+
+def package_this(version):
+    tag = contents.this_platform()
+    library, notices = contents.library_of(contents.ADDON / "lib", tag), contents.notices(tag, None)
+    wheel = python_wheel.bytes_of(version, contents.this_wheel_tag(), library, notices)
+    package(contents.BUILD, version, tag, library, notices, wheel, contents.BUILD)
+
+
+def package_all(version, built, tags):
+    folder = contents.BUILD / "addons"
+    for tag in tags:
+        library, notices = contents.library_of(Path(built) / tag / "lib", tag), contents.notices(tag, os.environ["LANCER_ZIG"])
+        wheel = python_wheel.bytes_of(version, contents.wheel_tag(tag), library, notices)
+        package(folder, version, tag, library, notices, wheel, folder / CLASSIC)
+        (folder / WHEELS).mkdir(exist_ok=True)
+        for old in (folder / WHEELS).glob(f"lancer-*-{contents.wheel_tag(tag)}.whl"):
+            old.unlink()
+        (folder / WHEELS / wheel[0]).write_bytes(wheel[1])
+        contents.told(folder / WHEELS / wheel[0])
+    index(folder)
 
 
 def main(arguments):
-    version = read_version()
-    if not arguments:
-        package(BUILD, version, this_platform(), ADDON / "lib" / LIBRARIES["linux"])
-        return
-    built, *tags = arguments
-    for tag in tags:
-        library = Path(built) / tag / "lib" / LIBRARIES[tag.split("-")[0]]
-        package(BUILD / "addons", version, tag, library, os.environ["LANCER_ZIG"])
+    version = contents.read_version()
+    if arguments:
+        package_all(version, arguments[0], arguments[1:])
+    else:
+        package_this(version)
 
 
 if __name__ == "__main__":

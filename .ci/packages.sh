@@ -74,6 +74,7 @@ want_fuzz() {
 want_platforms() {
   want_test
   want debootstrap command_is_there debootstrap
+  want iproute2 command_is_there ip
   want qemu-user-static command_is_there qemu-aarch64-static
   want wine64 file_is_there "/usr/lib/wine/wine64"
   want llvm command_is_there llvm-readobj

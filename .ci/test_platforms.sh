@@ -1,8 +1,8 @@
 #!/bin/sh
 # test_platforms.sh PYTHON PLATFORM...    runs the C++ tests and those of the bindings with the libraries of other platforms: of
 # Linux on the oldest supported Debian, of arm64 under qemu, of Windows under wine. Libraries that cannot be run here are
-# inspected. The zips of this machine's platform are installed, and Rendered shading runs in windows of the next Debian's
-# Blender.
+# inspected. The zips of this machine's platform are installed, also from a repository, and Rendered shading runs in windows of
+# the next Debian's Blender.
 set -eu
 
 case $1 in
@@ -68,7 +68,7 @@ stage() {
   tree=$places/$1/tree
   rm -rf "$tree"
   mkdir -p "$tree/core"
-  cp -a addon blender_tests scenes pyproject.toml "$tree"
+  cp -a .ci LICENSE addon blender_tests scenes pyproject.toml "$tree"
   cp -a core/include "$tree/core"
   rm -rf "$tree/addon/lib"
   cp -a "$places/$1/lib" "$tree/addon/lib"
@@ -122,12 +122,13 @@ linux_x64() {
   cpp linux-x64 "$@"
   stage linux-x64
   python_tests linux-x64 "$python"
-  say "linux-x64: the zips in the Blenders that are here"
+  say "linux-x64: the zips in the Blenders that are here, and the wheel"
   "$python" .ci/package.py "$places" linux-x64
-  in_blender "" blender/test_install.py
+  in_blender "" blender/test_install.py blender/test_repository.py farm/test_wheel.py
   next_debian
   say "linux-x64: the zips and Rendered shading in the next Debian's Blender"
-  in_blender "$PWD/.ci/next_blender.sh" blender/test_install.py blender/test_viewport.py -k "not module"
+  in_blender "$PWD/.ci/next_blender.sh" blender/test_install.py blender/test_repository.py blender/test_viewport.py \
+    -k "not module"
 }
 
 # in_blender PROGRAM FILE... [OPTION...]: runs tests with the zips and the library of linux-x64, in Debian's Blender if PROGRAM

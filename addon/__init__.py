@@ -31,7 +31,7 @@ def register():
         ) from None
     from . import ui
     from .engine import preview, render_engine, render_job, results
-    from .host import main_thread
+    from .host import main_thread, own_library
     from .host.registering import add_all
     from .operators import (
         bug_report,
@@ -45,7 +45,7 @@ def register():
     from .settings import manual, preferences, presets, properties
     from .viewport import viewport
 
-    modules = (properties, preferences, main_thread, results, render_engine, measuring)
+    modules = (own_library, properties, preferences, main_thread, results, render_engine, measuring)
     modules += (measure_features, measure_quality, check_scene, course_groups, take_over_cycles, presets)
     # render_job unregisters first: it ends a running render while the rest of the add-on is still registered.
     modules += (ui, bug_report, manual, viewport, preview, render_job)

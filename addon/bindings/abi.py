@@ -1,6 +1,5 @@
 """lancer.h in ctypes: loads the library and declares its functions; also re-exports structs and enums."""
 
-import contextlib
 import ctypes
 import functools
 import mmap
@@ -11,6 +10,7 @@ from ctypes import POINTER, c_char_p, c_double, c_float, c_int32, c_size_t, c_ui
 from . import elf
 from .enums import *  # noqa: F403 - abi is the one name under which others find the whole interface
 from .enums import ABI_VERSION, Status
+from .library_file import library_path
 from .structs import *  # noqa: F403
 from .structs import (
     STRUCTS,
@@ -30,7 +30,6 @@ from .structs import (
 )
 from .structs import Array as _Array
 
-_FILES = {"win32": ("lancer", ".dll"), "darwin": ("liblancer", ".dylib")}
 UINT32_MAX = 0xFFFFFFFF
 
 _u32, _u64 = c_uint32, c_uint64
@@ -105,20 +104,6 @@ class LancerError(Exception):
     def __init__(self, text, status=None):
         super().__init__(text)
         self.status = status
-
-
-def library_path():
-    """Return the path of the newest library in addon/lib; if there is none, the path at which the build writes it.
-
-    In the zips, the file name contains a hash of the content. Without the hash, a process that has loaded the old file would
-    get the old library again for an updated file of the same name.
-    """
-    folder = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "lib")
-    stem, ending = _FILES.get(sys.platform, ("liblancer", ".so"))
-    found = []
-    with contextlib.suppress(OSError):
-        found = [entry for entry in os.scandir(folder) if entry.name.startswith(stem) and entry.name.endswith(ending)]
-    return max(found, key=lambda entry: entry.stat().st_mtime).path if found else os.path.join(folder, stem + ending)
 
 
 def load_library(path=None):

@@ -6,6 +6,7 @@ import bpy
 import numpy as np
 
 from ..bindings.enums import Pass
+from ..bindings.pass_names import NAMES
 from ..denoise import view_layer as denoise
 
 
@@ -16,50 +17,55 @@ class RenderPass(NamedTuple):
     source: Pass | None  # None: the engine fills it after denoising
 
 
-# Name of the view layer's switch use_pass_*, name of the pass from Blender 5 on and before, channels, kind, source.
+# Name of the view layer's switch use_pass_*, source, kind.
 _TABLE = (
-    ("z", "Depth", "Depth", "Z", "VALUE", Pass.DEPTH),
-    ("mist", "Mist", "Mist", "Z", "VALUE", Pass.MIST),
-    ("position", "Position", "Position", "XYZ", "VECTOR", Pass.POSITION),
-    ("normal", "Normal", "Normal", "XYZ", "VECTOR", Pass.NORMAL),
-    ("uv", "UV", "UV", "UVA", "VECTOR", Pass.UV),
-    ("object_index", "Object Index", "IndexOB", "X", "VALUE", Pass.OBJECT_INDEX),
-    ("material_index", "Material Index", "IndexMA", "X", "VALUE", Pass.MATERIAL_INDEX),
-    ("diffuse_direct", "Diffuse Direct", "DiffDir", "RGB", "COLOR", Pass.DIFFUSE_DIRECT),
-    ("diffuse_indirect", "Diffuse Indirect", "DiffInd", "RGB", "COLOR", Pass.DIFFUSE_INDIRECT),
-    ("diffuse_color", "Diffuse Color", "DiffCol", "RGB", "COLOR", Pass.DIFFUSE_COLOR),
-    ("glossy_direct", "Glossy Direct", "GlossDir", "RGB", "COLOR", Pass.GLOSSY_DIRECT),
-    ("glossy_indirect", "Glossy Indirect", "GlossInd", "RGB", "COLOR", Pass.GLOSSY_INDIRECT),
-    ("glossy_color", "Glossy Color", "GlossCol", "RGB", "COLOR", Pass.GLOSSY_COLOR),
-    ("transmission_direct", "Transmission Direct", "TransDir", "RGB", "COLOR", Pass.TRANSMISSION_DIRECT),
-    ("transmission_indirect", "Transmission Indirect", "TransInd", "RGB", "COLOR", Pass.TRANSMISSION_INDIRECT),
-    ("transmission_color", "Transmission Color", "TransCol", "RGB", "COLOR", Pass.TRANSMISSION_COLOR),
-    ("emit", "Emission", "Emit", "RGB", "COLOR", Pass.EMISSION),
-    ("environment", "Environment", "Env", "RGB", "COLOR", Pass.ENVIRONMENT),
-    ("ambient_occlusion", "Ambient Occlusion", "AO", "RGB", "COLOR", Pass.AMBIENT_OCCLUSION),
+    ("z", Pass.DEPTH, "VALUE"),
+    ("mist", Pass.MIST, "VALUE"),
+    ("position", Pass.POSITION, "VECTOR"),
+    ("normal", Pass.NORMAL, "VECTOR"),
+    ("uv", Pass.UV, "VECTOR"),
+    ("object_index", Pass.OBJECT_INDEX, "VALUE"),
+    ("material_index", Pass.MATERIAL_INDEX, "VALUE"),
+    ("diffuse_direct", Pass.DIFFUSE_DIRECT, "COLOR"),
+    ("diffuse_indirect", Pass.DIFFUSE_INDIRECT, "COLOR"),
+    ("diffuse_color", Pass.DIFFUSE_COLOR, "COLOR"),
+    ("glossy_direct", Pass.GLOSSY_DIRECT, "COLOR"),
+    ("glossy_indirect", Pass.GLOSSY_INDIRECT, "COLOR"),
+    ("glossy_color", Pass.GLOSSY_COLOR, "COLOR"),
+    ("transmission_direct", Pass.TRANSMISSION_DIRECT, "COLOR"),
+    ("transmission_indirect", Pass.TRANSMISSION_INDIRECT, "COLOR"),
+    ("transmission_color", Pass.TRANSMISSION_COLOR, "COLOR"),
+    ("emit", Pass.EMISSION, "COLOR"),
+    ("environment", Pass.ENVIRONMENT, "COLOR"),
+    ("ambient_occlusion", Pass.AMBIENT_OCCLUSION, "COLOR"),
 )
 _DENOISED_ERROR = "Lancer Denoised Error"
-_NAME = 1 if bpy.app.version >= (5, 0) else 2
+_LONG_NAMES = bpy.app.version >= (5, 0)
+
+
+def _pass(source, kind):
+    named = NAMES[source]
+    return RenderPass(named.name if _LONG_NAMES else named.short, named.channels, kind, source)
 
 
 def render_passes(scene, view_layer):
     """Yield the passes that a view layer requests."""
-    yield RenderPass("Combined", "RGBA", "COLOR", Pass.COMBINED)
-    for row in _TABLE:
-        if getattr(view_layer, "use_pass_" + row[0]):
-            yield RenderPass(row[_NAME], *row[3:])
+    yield _pass(Pass.COMBINED, "COLOR")
+    for switch, source, kind in _TABLE:
+        if getattr(view_layer, "use_pass_" + switch):
+            yield _pass(source, kind)
     if denoise.wanted(scene, view_layer):
         yield RenderPass("Noisy Image", "RGBA", "COLOR", Pass.COMBINED)
     # The switch belongs to Cycles, an add-on that may be disabled.
     denoising = getattr(getattr(view_layer, "cycles", None), "denoising_store_passes", False)
     if denoising:
-        yield RenderPass("Denoising Normal", "XYZ", "VECTOR", Pass.DENOISING_NORMAL)
+        yield _pass(Pass.DENOISING_NORMAL, "VECTOR")
     if denoising or scene.lancer.use_pass_albedo:
-        yield RenderPass("Denoising Albedo", "RGB", "COLOR", Pass.ALBEDO)
+        yield _pass(Pass.ALBEDO, "COLOR")
     if denoising:
-        yield RenderPass("Denoising Depth", "Z", "VALUE", Pass.DENOISING_DEPTH)
+        yield _pass(Pass.DENOISING_DEPTH, "VALUE")
     if scene.lancer.use_pass_error:
-        yield RenderPass("Lancer Error", "X", "VALUE", Pass.ERROR)
+        yield _pass(Pass.ERROR, "VALUE")
         if denoise.wanted(scene, view_layer):
             yield RenderPass(_DENOISED_ERROR, "X", "VALUE", None)
 

@@ -1,1 +1,1 @@
-"""One picture on many machines."""
+"""Renders without Blender, on this machine and on many others. No bpy."""

@@ -9,9 +9,10 @@ from conftest import ROOT
 ADDON = Path(ROOT, "addon")
 # A file imports only from its own room and from rooms of lower ranks. The top level has only __init__.py.
 RANKS = (
-    "bindings messages host",
-    "measure denoise checks farm export",
-    "viewport settings",
+    "bindings messages",
+    "host",
+    "measure denoise checks export",
+    "viewport settings farm",
     "engine",
     "operators",
     "ui",

@@ -43,6 +43,11 @@ def program():
     return path
 
 
+def module_python():
+    """This Python, or what LANCER_TEST_PYTHON names: its bpy module is installed into."""
+    return os.environ.get("LANCER_TEST_PYTHON") or sys.executable
+
+
 def _start(which, folder, **extra):
     path = None if which == MODULE else program()
     return BlenderServer(path, environment(folder, **extra), os.path.join(str(folder), "blender.txt"))

@@ -7,6 +7,10 @@ import sys
 
 import bpy
 
+sys.path.append(os.path.dirname(os.path.abspath(__file__)))
+
+from installed import render  # noqa: E402
+
 RESULT, OLDER, NEWER = sys.argv[sys.argv.index("--") + 1 :]
 EXTENSIONS = bpy.app.version >= (4, 2, 0)
 MODULE = "bl_ext.user_default.lancer" if EXTENSIONS else "lancer"
@@ -36,22 +40,6 @@ def remove():
             shutil.rmtree(path)
 
 
-def render():
-    """Return the release and the library that a render uses now."""
-    scene = bpy.context.scene
-    scene.render.engine = "LANCER"
-    scene.lancer.quality, scene.lancer.samples = "CUSTOM", 1
-    scene.render.resolution_x = scene.render.resolution_y = 16
-    scene.render.filepath = os.path.join(os.path.dirname(RESULT), "picture.png")
-    bpy.ops.render.render(write_still=True)
-    picture = bpy.data.images.load(scene.render.filepath)
-    brightest = max(value for i, value in enumerate(picture.pixels) if i % 4 < 3)
-    bpy.data.images.remove(picture)
-    os.remove(scene.render.filepath)
-    library = sys.modules[MODULE + ".bindings.abi"].load_library()
-    return {"release": sys.modules[MODULE].VERSION, "library": library.lancer_version().decode(), "brightest": brightest}
-
-
 def there():
     return {
         "engine": "LANCER"
@@ -65,13 +53,15 @@ def main():
     result = {"blender": bpy.app.version_string, "before": there()}
     install(OLDER)
     result["folder"] = os.path.dirname(sys.modules[MODULE].__file__)
-    result["older"] = {**there(), **render()}
+    result["older"] = {**there(), **render(MODULE, os.path.dirname(RESULT))}
     install(NEWER)
-    result["newer"] = {**there(), **render()}
+    result["newer"] = {**there(), **render(MODULE, os.path.dirname(RESULT))}
     bpy.ops.preferences.addon_disable(module=MODULE)
     result["disabled"] = there()
     remove()
-    result["left"] = os.path.exists(result["folder"])
+    # Blender 4.2.0 keeps the unpacked wheel of the last extension.
+    paths = (result["folder"], result["newer"]["file"] if bpy.app.version >= (4, 2, 1) else "")
+    result["left"] = [path for path in paths if os.path.exists(path)]
     with open(RESULT, "w", encoding="utf-8") as file:
         json.dump(result, file)
 

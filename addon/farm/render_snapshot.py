@@ -1,0 +1,127 @@
+"""Renders a snapshot on this machine as its settings say: samples, target error, time limit."""
+
+import dataclasses
+import math
+import os
+from typing import NamedTuple
+
+import numpy as np
+
+from ..bindings import bug_report
+from ..bindings.abi import Pass
+from ..bindings.pass_names import NAMES
+from ..bindings.session import Session
+from ..bindings.snapshot import Camera, SceneSnapshot, Settings
+from ..measure import render_report
+from ..measure.scene_features import kernel_in_words, used_features
+from ..measure.schedule import Schedule, TimeShare
+from ..messages.messages import Messages
+
+# Seconds between polls.
+_STEP = 0.1
+# Share of the time for reading the error, and least seconds between two readings.
+_ERROR_SHARE, _ERROR_EVERY = 0.03, 0.5
+
+
+class Rendered(NamedTuple):
+    """A finished picture. Row 0 of each pass is the top row, as in image files; a Session's passes begin at the bottom."""
+
+    passes: dict  # Blender's name of the pass -> (height, width, channels) float32, scene-linear
+    statistics: dict  # samples, error, error_low, error_high, seconds and more
+    messages: list  # sentences about what differs from the scene
+    camera: Camera
+    settings: Settings
+
+    @property
+    def picture(self):
+        """Combined: RGBA, colours multiplied by alpha."""
+        return self.passes[NAMES[Pass.COMBINED].name]
+
+    @property
+    def channels(self):
+        """The letters of each pass's channels, by its name."""
+        return {named.name: named.channels for named in NAMES.values() if named.name in self.passes}
+
+    def save(self, path, half=False):
+        """Write the passes to an OpenEXR file, or the picture to a PNG file; half: colours with 16 bits. Needs OpenImageIO."""
+        from . import picture_file
+
+        picture_file.write(self, path, half)
+
+
+def load(path):
+    """Return the SceneSnapshot in a snapshot or bug report; raise SnapshotError if it has none."""
+    return bug_report.load(path)[0]
+
+
+def adjusted(snapshot, samples=None, threads=None):
+    """Return the snapshot with that number of samples, without target error and time limit, or with that number of threads."""
+    changes = {} if samples is None else {"samples": int(samples), "target_error": 0.0, "time_limit": 0.0}
+    if threads is not None:
+        changes["threads"] = int(threads)
+    return dataclasses.replace(snapshot, settings=dataclasses.replace(snapshot.settings, **changes)) if changes else snapshot
+
+
+def render(scene, samples=None, threads=None, tell=None):
+    """Render a SceneSnapshot, or the one in a file, and return a Rendered; raise LancerError if that fails.
+
+    samples, threads: in place of the snapshot's settings. tell(fraction, text) is called during the render.
+    """
+    snapshot = adjusted(scene if isinstance(scene, SceneSnapshot) else load(os.fspath(scene)), samples, threads)
+    if tell is not None:
+        tell(0.0, "building the scene")
+    with Session.upload(snapshot) as session:
+        schedule, reading = Schedule(session), TimeShare(_ERROR_SHARE, _ERROR_EVERY)
+        while schedule.start():
+            while not _step(schedule, reading, tell):
+                pass
+        passes = {NAMES[which].name: _from_top(session.read(which)) for which in _read(snapshot.settings)}
+        messages = Messages.of_library(session.messages()).lines()
+        return Rendered(passes, render_report.account(session, schedule), messages, session.camera, session.settings)
+
+
+def _step(schedule, reading, tell):
+    """Wait for a part of the range; return whether it has ended."""
+    progress = schedule.wait(_STEP)
+    if tell is not None:
+        if schedule.samples > 1 and reading.due:
+            reading.spend(schedule.look)
+        tell(schedule.fraction, _status(schedule, progress))
+    return progress.finished
+
+
+def _status(schedule, progress):
+    parts = [f"{progress.samples / schedule.pixels:.0f}/{schedule.settings.samples} samples"]
+    if schedule.error is not None and schedule.error.known:
+        parts.append(f"error {render_report.percent(schedule.error.error)}")
+    seconds = schedule.remaining()[0]
+    if math.isfinite(seconds):
+        parts.append(f"{render_report.duration(seconds)} left")
+    return ", ".join(parts)
+
+
+def _read(settings):
+    """Return the passes for files: those of the settings with names, and Combined."""
+    wanted = {Pass.COMBINED, *map(Pass, settings.passes)}
+    return sorted(which for which in wanted if which in NAMES)
+
+
+def _from_top(image):
+    return np.ascontiguousarray(image[::-1])
+
+
+def report(snapshot, facts, rendered):
+    """Yield sentences about a render. facts: those of its bug report."""
+    for name, version in facts.get("versions", {}).items():
+        yield f"reported with {name}: {version}"
+    for message in facts.get("exported", ()):
+        yield f"reported: {message['text']}"
+    yield from rendered.messages
+    numbers = rendered.statistics
+    yield from render_report.lines(numbers, snapshot.settings)
+    before = (facts.get("statistics") or {}).get("error", math.inf)
+    if math.isfinite(before):
+        yield f"reported error: {render_report.percent(before)}"
+    yield f"{numbers['rays_per_second'] / 1e6:.2f} million rays/s, {numbers['threads']} threads, {numbers['instruction_set']}"
+    yield from (feature.text for feature in used_features(snapshot))
+    yield f"shaded by the code for {kernel_in_words(numbers['kernel'])}"
