@@ -58,7 +58,8 @@ def main(folder, wanted, optional):
         print(f"== python: new environment {folder} ({dotted(sys.version_info[:2])})", flush=True)
         shutil.rmtree(folder, ignore_errors=True)
         subprocess.run([sys.executable, "-m", "venv", folder], check=True)
-    if missing and not install(folder, [line for name in missing for line in groups[name]]):
+    # pip keeps what is there only if it is asked for together with what is missing.
+    if missing and not install(folder, [line for name in wanted for line in groups[name]]):
         sys.exit("pip could not install the Python packages above: see its message, then run the same command again.")
     for name in missing_optional:
         if install(folder, groups[name]):

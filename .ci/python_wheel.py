@@ -73,12 +73,6 @@ def files_of(version, library, notices):
     return {f"lancer/{path}": content for path, content in files.items()}, licenses
 
 
-def entry_point(files):
-    """Returns the function behind the command `lancer`."""
-    module = "__main__" if "lancer/farm/__main__.py" in files else "render_command"
-    return f"[console_scripts]\nlancer = lancer.farm.{module}:main\n".encode()
-
-
 def write(folder, version, tag, files, licenses):
     """Writes the wheel and returns its path. tag: the platform's name in a wheel's file name."""
     os.environ["SOURCE_DATE_EPOCH"] = OLDEST_DATE
@@ -86,7 +80,7 @@ def write(folder, version, tag, files, licenses):
     described = {
         "METADATA": metadata(version, licenses),
         "WHEEL": f"Wheel-Version: 1.0\nGenerator: lancer\nRoot-Is-Purelib: false\nTag: py3-none-{tag}\n".encode(),
-        "entry_points.txt": entry_point(files),
+        "entry_points.txt": b"[console_scripts]\nlancer = lancer.farm.__main__:main\n",
     } | {f"licenses/{name}": content for name, content in licenses.items()}
     path = Path(folder) / f"lancer-{version}-py3-none-{tag}.whl"
     with WheelFile(path, "w") as archive:

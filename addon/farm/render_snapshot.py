@@ -1,4 +1,4 @@
-"""Renders a snapshot on this machine as its settings say: samples, target error, time limit."""
+"""Renders a snapshot as its settings say: samples, target error, time limit; on this machine or by a pool of workers."""
 
 import dataclasses
 import math
@@ -14,13 +14,9 @@ from ..bindings.session import Session
 from ..bindings.snapshot import Camera, SceneSnapshot, Settings
 from ..measure import render_report
 from ..measure.scene_features import kernel_in_words, used_features
-from ..measure.schedule import Schedule, TimeShare
 from ..messages.messages import Messages
-
-# Seconds between polls.
-_STEP = 0.1
-# Share of the time for reading the error, and least seconds between two readings.
-_ERROR_SHARE, _ERROR_EVERY = 0.03, 0.5
+from .remote_session import RemoteSession
+from .still import render_still
 
 
 class Rendered(NamedTuple):
@@ -54,50 +50,32 @@ def load(path):
     return bug_report.load(path)[0]
 
 
-def adjusted(snapshot, samples=None, threads=None):
-    """Return the snapshot with that number of samples, without target error and time limit, or with that number of threads."""
-    changes = {} if samples is None else {"samples": int(samples), "target_error": 0.0, "time_limit": 0.0}
-    if threads is not None:
-        changes["threads"] = int(threads)
+def adjusted(snapshot, samples=None, threads=None, target_error=None, time_limit=None):
+    """Return the snapshot with other settings. samples alone: without its target error and time limit."""
+    given = {"samples": samples, "threads": threads, "target_error": target_error, "time_limit": time_limit}
+    changes = {} if samples is None else {"target_error": 0.0, "time_limit": 0.0}
+    changes |= {name: value for name, value in given.items() if value is not None}
     return dataclasses.replace(snapshot, settings=dataclasses.replace(snapshot.settings, **changes)) if changes else snapshot
 
 
-def render(scene, samples=None, threads=None, tell=None):
-    """Render a SceneSnapshot, or the one in a file, and return a Rendered; raise LancerError if that fails.
+def render(scene, samples=None, threads=None, tell=None, pool=None, poll=None):
+    """Render a SceneSnapshot, or the one in a file, and return a Rendered; raise LancerError or PoolError if that fails.
 
-    samples, threads: in place of the snapshot's settings. tell(fraction, text) is called during the render.
+    samples, threads: in place of the snapshot's settings. tell(fraction, text) is called during the render. pool: renders
+    instead of this machine, as pool.LocalPool. poll(): returns True to end the render with the samples that are there.
     """
     snapshot = adjusted(scene if isinstance(scene, SceneSnapshot) else load(os.fspath(scene)), samples, threads)
     if tell is not None:
         tell(0.0, "building the scene")
-    with Session.upload(snapshot) as session:
-        schedule, reading = Schedule(session), TimeShare(_ERROR_SHARE, _ERROR_EVERY)
-        while schedule.start():
-            while not _step(schedule, reading, tell):
-                pass
-        passes = {NAMES[which].name: _from_top(session.read(which)) for which in _read(snapshot.settings)}
-        messages = Messages.of_library(session.messages()).lines()
-        return Rendered(passes, render_report.account(session, schedule), messages, session.camera, session.settings)
+    with Session.upload(snapshot) if pool is None else RemoteSession(snapshot, pool, poll) as session:
+        return rendered_of(session, render_still(session, tell, poll))
 
 
-def _step(schedule, reading, tell):
-    """Wait for a part of the range; return whether it has ended."""
-    progress = schedule.wait(_STEP)
-    if tell is not None:
-        if schedule.samples > 1 and reading.due:
-            reading.spend(schedule.look)
-        tell(schedule.fraction, _status(schedule, progress))
-    return progress.finished
-
-
-def _status(schedule, progress):
-    parts = [f"{progress.samples / schedule.pixels:.0f}/{schedule.settings.samples} samples"]
-    if schedule.error is not None and schedule.error.known:
-        parts.append(f"error {render_report.percent(schedule.error.error)}")
-    seconds = schedule.remaining()[0]
-    if math.isfinite(seconds):
-        parts.append(f"{render_report.duration(seconds)} left")
-    return ", ".join(parts)
+def rendered_of(session, schedule):
+    """Return the Rendered of a session whose render has ended."""
+    passes = {NAMES[which].name: _from_top(session.read(which)) for which in _read(session.settings)}
+    messages = Messages.of_library(session.messages()).lines()
+    return Rendered(passes, render_report.account(session, schedule), messages, session.camera, session.settings)
 
 
 def _read(settings):

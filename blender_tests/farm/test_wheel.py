@@ -186,7 +186,5 @@ lancer.farm.render_snapshot.Session = None
 from lancer.farm.__main__ import main
 sys.exit(main(["render", "scene.npz"]))
 """
-    if not (contents.ADDON / "farm" / "__main__.py").exists():
-        code = code.replace("__main__", "render_command")
     done = subprocess.run([place / "venv/bin/python", "-I", "-c", code], capture_output=True, text=True, cwd=place)
     assert done.returncode == 1 and done.stderr.endswith("pip install OpenImageIO\n") and done.stderr.count("\n") == 1

@@ -1,0 +1,82 @@
+"""Division of a round of a picture into tasks of about equal work."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..bindings.parts import RANGE
+
+# Tasks for each worker that a share of the remaining work would make. Tasks become smaller as the work does, so that the last
+# ones of all workers end at about the same time (Polychronopoulos, Kuck, "Guided self-scheduling", 1987).
+_TASKS_EACH = 3
+# A range of a tile is rendered in at most this many pieces.
+_MOST_PIECES = 64
+
+
+class Task(NamedTuple):
+    """Some ranges of a round.
+
+    pieces: number of pieces in which the samples of each range are rendered, apart from each other; a worker joins them.
+    """
+
+    number: int
+    ranges: np.ndarray  # of RANGE
+    pieces: int
+    samples: int  # pixel samples
+
+    def piece(self, index):
+        """Return the ranges of one piece."""
+        counts = self.ranges["count"].astype(np.int64)
+        begin, end = counts * index // self.pieces, counts * (index + 1) // self.pieces
+        cut = self.ranges.copy()
+        cut["first"] += begin.astype(np.uint32)
+        cut["count"] = end - begin
+        return cut[cut["count"] > 0]
+
+
+class Round:
+    """The ranges of one round, handed out as tasks.
+
+    ranges: array of RANGE; pixels: pixels of each tile; first_number: the number of the first task.
+    """
+
+    def __init__(self, ranges, pixels, first_number=0):
+        self.ranges = ranges[pixels[ranges["tile"]] > 0]
+        work = self.ranges["count"].astype(np.int64) * pixels[self.ranges["tile"]]
+        self._ends = np.cumsum(work)
+        self._next = 0
+        self.number = first_number  # of the next task
+        self.samples = int(self._ends[-1]) if len(work) else 0
+
+    @property
+    def left(self):
+        """The pixel samples that have not been handed out."""
+        return self.samples - (int(self._ends[self._next - 1]) if self._next else 0)
+
+    def take(self, workers, least=1):
+        """Return the next Task, or None if nothing is left.
+
+        workers: their number; least: pixel samples below which a task is not worth its way.
+        """
+        if self._next == len(self.ranges):
+            return None
+        done = self.samples - self.left
+        share = max(least, self.left / (_TASKS_EACH * max(1, workers)))
+        end = max(self._next + 1, int(np.searchsorted(self._ends, done + share, side="right")))
+        ranges = self.ranges[self._next : end]
+        samples = int(self._ends[end - 1]) - done
+        # A picture of few tiles is cut along its samples, too.
+        pieces = min(math.ceil(samples / share), int(ranges["count"].max()), _MOST_PIECES) if len(ranges) == 1 else 1
+        task = Task(self.number, ranges, max(1, pieces), samples)
+        self.number += 1
+        self._next = end
+        return task
+
+
+def whole_range(first, count, tiles):
+    """Return the ranges of the same samples of all tiles."""
+    ranges = np.empty(tiles, RANGE)
+    ranges["tile"] = np.arange(tiles)
+    ranges["first"], ranges["count"] = first, count
+    return ranges
