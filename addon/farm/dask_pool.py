@@ -4,13 +4,12 @@ A lost worker's tasks go to others, which is Dask's work; so is a worker that jo
 restarted, tasks that one slow worker keeps, workers that send rubbish.
 """
 
-import os
 import queue
 import statistics
 import time
 import uuid
 
-from distributed import Client, LocalCluster, Variable
+from distributed import Client, Variable
 
 from . import dask_tasks
 from .pool import Done, PoolError
@@ -264,9 +263,3 @@ class DaskPool:
         for number, several in list(self._attempts.items()):
             self._attempts[number] = [self._begin(several[0].task, several[0].splits)] if several else []
         return True
-
-
-def local_cluster(workers=2, threads=0):
-    """Return a distributed.LocalCluster of processes on this machine, which share its processors."""
-    each = threads or max(1, (os.cpu_count() or 1) // workers)
-    return LocalCluster(n_workers=workers, threads_per_worker=each, processes=True)

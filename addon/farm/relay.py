@@ -7,7 +7,8 @@ import threading
 import time
 
 from . import pipe
-from .dask_pool import DaskPool, local_cluster
+from .dask_pool import DaskPool
+from .dask_worker import local_cluster
 from .pool import PoolError
 
 # Seconds between looks at the streams and the pool, and between reports of its state.

@@ -100,7 +100,8 @@ def _pool(arguments, bar, poll):
         yield None
         return
     try:
-        from .dask_pool import DaskPool, local_cluster
+        from .dask_pool import DaskPool
+        from .dask_worker import local_cluster
     except ImportError as error:
         raise PoolError(f"Dask is missing ({error}): pip install 'lancer[farm]', or distributed") from None
     local = arguments.scheduler == "local"
