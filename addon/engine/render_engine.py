@@ -23,7 +23,7 @@ from ..measure.schedule import SAMPLES, TARGET, TIME, Schedule, TimeShare
 from ..messages.messages import Messages
 from ..messages.severity import Severity
 from ..viewport.viewport import Viewport
-from . import passes, preview, render_export, render_job
+from . import many_machines, passes, preview, render_export, render_job
 from .denoising import Denoising, wishes
 from .picture import Picture
 from .quick_check import quick_check
@@ -88,11 +88,11 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             if self._snapshot is not None:
                 scene, view_layer = depsgraph.scene, depsgraph.view_layer_eval
                 layer, wanted = view_layer.name, tuple(passes.render_passes(scene, view_layer))
-                denoising = wishes(scene, view_layer)
+                denoising, machines = wishes(scene, view_layer), many_machines.wanted(scene)
                 # The snapshot is complete, and Blender's evaluated data can be larger than the render: free it. The depsgraph
                 # is invalid from here on.
                 self.free_blender_memory()
-                self._guarded(scene, self._render, scene, layer, wanted, denoising)
+                self._guarded(scene, self._render, scene, layer, wanted, denoising, machines)
             self._snapshot = None
             if self._is_over():
                 # The remaining layers are not rendered.
@@ -190,9 +190,15 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         self._tell(scene, messages)
         self._tell(scene, quick_check(scene, self._snapshot, self._is_over))
 
-    def _render(self, scene, layer, wanted, denoising):
+    def _opened(self, machines):
+        """Return a context of the session that renders the snapshot: on this machine, or on others."""
+        if machines is not None:
+            return many_machines.opened(machines, self._snapshot, self._is_over, lambda text: self.update_stats("", text))
         self.update_stats("", "Building the scene")
-        with lowered(lambda: Session.upload(self._snapshot, poll=self._is_over, release=True)) as session:
+        return lowered(lambda: Session.upload(self._snapshot, poll=self._is_over, release=True))
+
+    def _render(self, scene, layer, wanted, denoising, machines):
+        with self._opened(machines) as session:
             # The library has its own copy.
             self._snapshot = None
             self._tell(scene, Messages.of_library(session.messages()))
@@ -229,6 +235,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         """Render range by range and show the picture at intervals, until the schedule ends or the user cancels."""
         showing, reading = TimeShare(_SHOW_SHARE, _SHOW_EVERY), TimeShare(_ERROR_SHARE, _TELL_EVERY)
         told = time.monotonic()
+        many_machines.prepare(schedule)
         while schedule.start():
             first = not showing.begun
             while True:
@@ -259,7 +266,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         parts = [f"Remaining {_clock(seconds)}{_REMAINING[reason]}"]
         if schedule.error is not None and schedule.error.known:
             parts.append(f"Error {render_report.interval(schedule.error)}")
-        parts += [f"Sample {samples:.0f}/{schedule.settings.samples}", f"{rate:.2f} M rays/s"]
+        parts += [f"Sample {samples:.0f}/{schedule.settings.samples}", f"{rate:.2f} M rays/s", *many_machines.status(schedule)]
         self.update_stats("", " | ".join(parts))
 
     def _tell(self, scene, messages):

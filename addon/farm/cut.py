@@ -54,15 +54,16 @@ class Round:
         """The pixel samples that have not been handed out."""
         return self.samples - (int(self._ends[self._next - 1]) if self._next else 0)
 
-    def take(self, workers, least=1):
+    def take(self, workers, least=1, most=math.inf):
         """Return the next Task, or None if nothing is left.
 
-        workers: their number; least: pixel samples below which a task is not worth its way.
+        workers: their number; least: pixel samples below which a task is not worth its way; most: those above which the
+        picture would wait for it too long.
         """
         if self._next == len(self.ranges):
             return None
         done = self.samples - self.left
-        share = max(least, self.left / (_TASKS_EACH * max(1, workers)))
+        share = min(max(least, self.left / (_TASKS_EACH * max(1, workers))), most)
         end = max(self._next + 1, int(np.searchsorted(self._ends, done + share, side="right")))
         ranges = self.ranges[self._next : end]
         samples = int(self._ends[end - 1]) - done

@@ -3,6 +3,7 @@
 import contextlib
 import os
 import queue
+import shutil
 import subprocess
 import threading
 import time
@@ -10,9 +11,13 @@ from pathlib import Path
 
 import numpy as np
 
+from ..bindings.session import Cancelled
 from . import pipe
 from .pool import Done, PoolError
 from .worker import Decision, Made
+
+# A Python with Dask, from the add-on's preferences; "": the first one on the path.
+default_python = ""
 
 _STEP = 0.05
 # Seconds that the other process gets to end its work.
@@ -22,9 +27,9 @@ _OF_BLENDER = ("PYTHONHOME", "PYTHONPATH", "LD_LIBRARY_PATH", "LD_PRELOAD")
 
 
 class PipePool:
-    """python: path of a Python with Dask; address: of a scheduler, or "local". Methods: as pool.LocalPool."""
+    """python: path of a Python with Dask, "" for the default; address: a scheduler's, or "local". Methods: as LocalPool."""
 
-    def __init__(self, python, address, poll=None):
+    def __init__(self, python, address, poll=None, tell=None):
         self.address = address
         self.trouble = "connecting"
         self.workers = 0
@@ -39,8 +44,10 @@ class PipePool:
         while not self.workers:
             if poll is not None and poll():
                 self.close()
-                raise PoolError("cancelled before there was a worker")
+                raise Cancelled
             self._take(_STEP)
+            if tell is not None:
+                tell(self.trouble)
 
     def open(self, name, data, poll=None):
         self._send({"do": "open", "name": name}, data)
@@ -145,6 +152,7 @@ class PipePool:
 
 
 def _started(python, address):
+    python = python or default_python or shutil.which("python3") or shutil.which("python") or "python3"
     # The package as the add-on has it: it may be named by its installation.
     package = Path(__file__).resolve().parents[1]
     environment = {name: value for name, value in os.environ.items() if name not in _OF_BLENDER}

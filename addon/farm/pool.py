@@ -7,6 +7,7 @@ import queue
 import threading
 from typing import NamedTuple
 
+from ..bindings.abi import LancerError
 from . import worker
 
 
@@ -19,7 +20,7 @@ class Done(NamedTuple):
     by: tuple = ()
 
 
-class PoolError(Exception):
+class PoolError(LancerError):
     """The machines cannot go on; the text says what to do."""
 
 

@@ -17,8 +17,8 @@ from .pool import PoolError
 
 # Tasks on their way for each worker: one in work, and one that waits beside it.
 _AHEAD = 2
-# Seconds of work below which a task is not worth its way.
-_LEAST_SECONDS = 0.2
+# Seconds of work below which a task is not worth its way, and those of the longest one.
+_LEAST_SECONDS, _MOST_SECONDS = 0.2, 10.0
 # Failures of one task after which the picture ends.
 _MOST_FAILURES = 4
 
@@ -133,7 +133,7 @@ class RemoteSession:
         """Give the pool as many tasks as its workers can have in work and in reserve."""
         workers = self.pool.workers
         while not self._ended and self.pool.waiting < _AHEAD * max(1, workers):
-            task = self._round.take(workers, max(1, self._rate * _LEAST_SECONDS))
+            task = self._round.take(workers, max(1, self._rate * _LEAST_SECONDS), self._rate * _MOST_SECONDS or math.inf)
             if task is None:
                 break
             self._number = self._round.number

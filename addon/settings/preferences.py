@@ -2,9 +2,10 @@
 
 import bpy
 from bpy.app.handlers import persistent
-from bpy.props import EnumProperty, IntProperty
+from bpy.props import EnumProperty, IntProperty, StringProperty
 
 from ..export import settings
+from ..farm import pipe_pool
 from .scene_settings import QUALITIES
 
 # Blender identifies an add-on by its top package, the parent of this one.
@@ -14,6 +15,10 @@ _ADDON = __package__.rpartition(".")[0]
 def _threads_changed(self, _context):
     # A render thread must not access Blender's context: copy the value.
     settings.default_threads = self.threads
+
+
+def _python_changed(self, _context):
+    pipe_pool.default_python = bpy.path.abspath(self.farm_python)
 
 
 class LancerPreferences(bpy.types.AddonPreferences):
@@ -27,6 +32,13 @@ class LancerPreferences(bpy.types.AddonPreferences):
         max=1024,
         default=0,
         update=_threads_changed,
+    )
+    farm_python: StringProperty(
+        name="Python with Dask",
+        description="Program that speaks to the scheduler of Many Machines: a Python with the packages distributed and numpy, "
+        "since Blender's own has no Dask. Empty: the first Python on the system's path",
+        subtype="FILE_PATH",
+        update=_python_changed,
     )
     quality: EnumProperty(
         name="Quality of New Files",
@@ -46,6 +58,7 @@ class LancerPreferences(bpy.types.AddonPreferences):
         column.use_property_split = True
         column.prop(self, "threads")
         column.prop(self, "quality")
+        column.prop(self, "farm_python")
 
 
 def _found():
@@ -70,6 +83,7 @@ def register():
     preferences = _found()
     if preferences is not None:
         _threads_changed(preferences, None)
+        _python_changed(preferences, None)
     bpy.app.handlers.load_post.append(_start_new_file)
 
 
@@ -77,3 +91,4 @@ def unregister():
     bpy.app.handlers.load_post.remove(_start_new_file)
     bpy.utils.unregister_class(LancerPreferences)
     settings.default_threads = 0
+    pipe_pool.default_python = ""

@@ -5,7 +5,7 @@ Files store the numbers of enum items: never renumber or reuse them.
 
 import bpy
 from bpy.app.handlers import persistent
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
 from ..bindings.structs import SETTINGS
 from ..denoise.view_layer import missing
@@ -91,6 +91,17 @@ class LancerSceneSettings(bpy.types.PropertyGroup):
         description="The target error is that of the denoised picture, which is checked each time the samples have doubled. "
         "Off: that of the picture before denoising",
         default=True,
+    )
+    use_many_machines: BoolProperty(
+        name="Many Machines",
+        description="F12 renders on the workers of a scheduler instead of this machine, to the same picture",
+        default=False,
+    )
+    scheduler: StringProperty(
+        name="Scheduler",
+        description="Address of a Dask scheduler, as tcp://192.168.1.10:8786 or tls://farm:8786; local: two workers on this "
+        "machine",
+        default="",
     )
     seed: IntProperty(name="Seed", description="Number that selects the pattern of noise", min=0, default=0)
     use_animated_seed: BoolProperty(

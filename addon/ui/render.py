@@ -5,6 +5,7 @@ from bl_ui.properties_grease_pencil_common import GreasePencilSimplifyPanel
 
 from ..denoise import view_layer as denoise
 from ..export.settings import glass_owner
+from ..measure.render_report import percent
 from ..operators import measure_quality, measuring, take_over_cycles
 from ..settings import presets
 from .panel import LancerPanel, setting, uses_classic
@@ -21,6 +22,12 @@ _REPLACED = (
 _DENOISING = (
     "Open Image Denoise is a guess and can remove details. Its own error is reported beside that of the picture before "
     "denoising, the pass Noisy Image."
+)
+
+
+_MACHINES = (
+    "Workers get the exported scene and send back sums of samples; the picture has the same bits as here. Views and previews "
+    "stay on this machine."
 )
 
 
@@ -130,6 +137,27 @@ class LANCER_RENDER_PT_sampling_advanced(LancerRenderPanel, bpy.types.Panel):
         row = self._column().row(align=True)
         row.prop(settings, "seed")
         row.prop(settings, "use_animated_seed", text="", icon="TIME")
+
+
+class LANCER_RENDER_PT_many_machines(LancerRenderPanel, bpy.types.Panel):
+    """The scheduler whose workers render F12, with what ends the picture there, too."""
+
+    bl_label = "Many Machines"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header(self, context):
+        self.layout.prop(context.scene.lancer, "use_many_machines", text="")
+
+    def draw(self, context):
+        settings = context.scene.lancer
+        column = self._column()
+        column.active = settings.use_many_machines
+        column.prop(settings, "scheduler")
+        ends = [f"{settings.samples} samples"]
+        if settings.target_error > 0.0:
+            ends.insert(0, f"an error of {percent(settings.target_error)}")
+        sentence(column, context, f"Ends as here: at {' or '.join(ends)}, see Sampling")
+        sentence(column, context, _MACHINES)
 
 
 class LANCER_RENDER_PT_light_paths(LancerRenderPanel, bpy.types.Panel):
@@ -310,6 +338,7 @@ CLASSES = (
     LANCER_RENDER_PT_sampling_viewport,
     LANCER_RENDER_PT_denoising,
     LANCER_RENDER_PT_sampling_advanced,
+    LANCER_RENDER_PT_many_machines,
     LANCER_RENDER_PT_light_paths,
     LANCER_RENDER_PT_max_bounces,
     LANCER_RENDER_PT_clamping,
