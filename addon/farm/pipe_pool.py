@@ -146,8 +146,9 @@ class PipePool:
     def _last_words(self):
         self._process.wait(_PATIENCE)
         lines = self._said.decode("utf-8", "replace").strip().splitlines()
-        if any("No module named 'distributed'" in line for line in lines):
-            return f"{self._process.args[0]} has no Dask: run `{self._process.args[0]} -m pip install distributed numpy`"
+        if lines and "No module named" in lines[-1]:
+            python = self._process.args[0]
+            return f"{python} has no Dask ({lines[-1]}): run `{python} -m pip install distributed numpy`"
         return f"the process that speaks to the scheduler has ended: {lines[-1] if lines else 'it said nothing'}"
 
 

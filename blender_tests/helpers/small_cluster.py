@@ -9,6 +9,7 @@ import sys
 import time
 
 from conftest import ROOT
+from distributed import Client
 
 # Seconds until a program must be there.
 PATIENCE = 30.0
@@ -51,6 +52,10 @@ class SmallCluster:
             path.write_text(code)
             preload = ("--preload", str(path))
         return self._start("worker", "-m", "distributed.cli.dask_worker", *options, str(self.folder), *preload)
+
+    def wait_for_workers(self, count):
+        with Client(self.address, set_as_default=False) as client:
+            client.wait_for_workers(count, timeout=PATIENCE)
 
     def stop(self, process, how=signal.SIGKILL):
         process.send_signal(how)

@@ -1,0 +1,148 @@
+"""Stills by real workers: processes of Dask that are killed, come late, or send rubbish, and a scheduler that is restarted."""
+
+import dataclasses
+import threading
+
+import pytest
+import small_cluster
+from rich_snapshot import rich
+
+from addon.bindings.session import Session
+from addon.farm.dask_pool import DaskPool
+from addon.farm.remote_session import RemoteSession
+from addon.farm.still import render_still
+from addon.measure.schedule import SAMPLES, TARGET, Schedule
+
+# A worker that sends parts with one wrong bit.
+RUBBISH = """
+from addon.farm import dask_tasks, worker
+
+def render(*arguments, right=worker.render):
+    made = right(*arguments)
+    made.part[len(made.part) // 2] ^= 1
+    return made
+
+worker.render = render
+"""
+# A worker that takes ten seconds longer for each task: far longer than all others need for the picture.
+SLOW = """
+import time
+from addon.farm import worker
+
+def render(*arguments, right=worker.render):
+    time.sleep(10.0)
+    return right(*arguments)
+
+worker.render = render
+"""
+
+
+def snapshot(**settings):
+    plain = rich()
+    camera = dataclasses.replace(plain.camera, width=60, height=44, region_width=60, region_height=44)
+    settings = {"samples": 200, "split_lights": 0, "split_paths": 0, "passes": (0, 1, 24)} | settings
+    return dataclasses.replace(plain, camera=camera, settings=plain.settings.replaced(**settings))
+
+
+def alone(scene):
+    """Return the passes, error and reason of a render by one session."""
+    with Session.upload(scene) as session:
+        schedule = Schedule(session)
+        while schedule.start():
+            while not schedule.wait(0.05).finished:
+                pass
+        return [session.read(which) for which in scene.settings.passes], session.error(), schedule.reason
+
+
+def expect_the_same(session, schedule, expected):
+    passes, error, reason = expected
+    assert schedule.reason is reason and session.error() == error
+    for which, picture in zip(session.settings.passes, passes, strict=True):
+        assert session.read(which).tobytes() == picture.tobytes(), which
+
+
+@pytest.fixture(scope="module")
+def by_samples():
+    return alone(snapshot())
+
+
+@pytest.fixture
+def cluster(tmp_path):
+    with small_cluster.cluster(tmp_path) as made:
+        yield made
+
+
+def render(cluster, scene, expected, then=None, at=0.1):
+    """Render by the cluster, call then() once when that share is done, and compare; return the RemoteSession."""
+    happened = []
+
+    def tell(fraction, _text):
+        if then is not None and fraction >= at and not happened:
+            happened.append(True)
+            then()
+
+    pool = DaskPool(cluster.address)
+    try:
+        with RemoteSession(scene, pool) as session:
+            schedule = render_still(session, tell)
+            expect_the_same(session, schedule, expected)
+            assert then is None or happened, "the render ended before anything happened"
+            return session
+    finally:
+        pool.close()
+
+
+def test_two_workers_give_the_bits_of_one_process(cluster, by_samples):
+    session = render(cluster, snapshot(), by_samples)
+    assert len(session.makers) == 2 and not session.refused
+    assert by_samples[2] is SAMPLES
+
+
+def test_rounds_to_a_target_error_are_those_of_one_process(cluster):
+    scene = snapshot(samples=512, target_error=0.35)
+    expected = alone(scene)
+    session = render(cluster, scene, expected)
+    assert expected[2] is TARGET and expected[1].least_samples < expected[1].most_samples
+    assert len(session.makers) == 2
+
+
+def test_a_killed_worker_loses_nothing(cluster, by_samples):
+    render(cluster, snapshot(), by_samples, lambda: cluster.stop(cluster.processes[1]))
+
+
+def test_a_late_worker_helps(cluster, by_samples):
+    def come():
+        cluster.start_worker()
+        cluster.wait_for_workers(3)
+
+    session = render(cluster, snapshot(), by_samples, come)
+    assert len(session.makers) == 3
+
+
+def test_a_restarted_scheduler_gets_the_rest(cluster, by_samples):
+    def restart():
+        cluster.stop(cluster.scheduler)
+
+        def again():
+            cluster.start_scheduler()
+            cluster.start_worker()
+
+        threading.Thread(target=again).start()
+
+    render(cluster, snapshot(), by_samples, restart)
+
+
+def test_a_worker_that_sends_rubbish_is_named_and_avoided(cluster, by_samples):
+    cluster.start_worker(RUBBISH)
+    cluster.wait_for_workers(3)
+    session = render(cluster, snapshot(), by_samples)
+    assert 1 <= len(session.refused) <= 2 and all("damaged" in sentence for sentence in session.refused)
+    named = {sentence.split(": ")[0] for sentence in session.refused}
+    assert len(named) == 1 and named.isdisjoint(session.makers)
+
+
+def test_a_slow_workers_task_is_given_to_another(cluster, by_samples):
+    cluster.start_worker(SLOW)
+    cluster.wait_for_workers(3)
+    session = render(cluster, snapshot(), by_samples)
+    assert len(session.makers) == 2
