@@ -23,6 +23,9 @@ _FRESH = 1.0
 _MOST_STRIKES = 2
 # A task is given to a second worker, too, if all are handed out and it takes this many times as long as the others.
 _SLOW = 3.0
+# Attempts to find a worker that can begin.
+_MOST_FAILURES = 4
+_STEP = 0.05
 # Parts that one join takes.
 _FAN = 4
 
@@ -58,21 +61,28 @@ class DaskPool:
         self._send(poll)
 
     def decide(self, poll=None):
-        while True:
-            future = self._client.submit(dask_tasks.decide, self._scene[0], self._parcel_of(), pure=False)
+        failures = []
+        while len(failures) < _MOST_FAILURES:
+            workers = self._allowed() if self._strikes else None
+            future = self._client.submit(dask_tasks.decide, self._scene[0], self._parcel_of(), pure=False, workers=workers)
             self._prepare()
             while not future.done():
                 if poll is not None and poll():
                     return None
                 if self._is_lost(poll):
                     break
-                time.sleep(0.05)
+                time.sleep(_STEP)
             if not future.done() or future.status in ("cancelled", "lost"):
                 continue
-            made = future.result()
+            try:
+                made = future.result()
+            except Exception as error:
+                made = dask_tasks.Failure(f"{type(error).__name__}: {error}", ())
             if not isinstance(made, dask_tasks.Failure):
                 return made
+            failures.append(f"{', '.join(made.by) or 'a worker'}: {made.text}")
             self.refuse(made.by, made.text)
+        raise PoolError(f"{_MOST_FAILURES} workers could not begin; the last one, {failures[-1]}")
 
     @property
     def workers(self):
@@ -146,7 +156,13 @@ class DaskPool:
         """Bring the scene's bytes to one worker; the others fetch them from each other."""
         name, data = self._scene
         self._parcel = Variable(f"lancer-{uuid.uuid4().hex}", client=self._client)
-        self._parcel.set(self._client.scatter(data, hash=False, direct=True))
+        try:
+            future = self._client.scatter(data, hash=False, direct=True)
+        except (OSError, TimeoutError):
+            # Workers behind the scheduler, which this machine cannot reach: all data go through it.
+            self._client.direct_to_workers = False
+            future = self._client.scatter(data, hash=False, direct=False)
+        self._parcel.set(future)
         self._prepared, self._preparing = set(), []
 
     def _parcel_of(self):

@@ -143,7 +143,7 @@ class Still(Job):
     snapshot: str = described("snapshot of the scene")
     samples: int = described("samples of the picture")
     parts: int = described("parts that the samples are split into")
-    part_files: str = described("files of the parts, as parts/part-##.npz")
+    part_files: str = described("files of the parts, as parts/part-##.lancer")
     picture: str = described("file of the merged picture")
     python: str = described("command that starts Python", default="python3")
     module: str = described("Python module that renders parts and merges them", default="lancer.farm")
