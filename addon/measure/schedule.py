@@ -51,6 +51,8 @@ class Schedule:
         self._seconds_per_sample = 0.0
         self._progress = None
         self._denoised = denoised
+        self._judged = False  # whether the last range has been compared with the limits
+        self._checked = None  # the PictureError that was compared with the target
         self._bound = None  # the last error that was compared with the target
         self.pixels = session.camera.region_width * session.camera.region_height
 
@@ -85,8 +87,12 @@ class Schedule:
 
     @property
     def over(self):
-        """Whether no further range follows; reads the error if there is a target."""
-        if self.reason is None and (self._progress is None or self._progress.finished):
+        """Whether no further range follows; reads the error if there is a target.
+
+        A range is judged once, however often this is asked: a picture must not depend on how often it is shown.
+        """
+        if self.reason is None and not self._judged and (self._progress is None or self._progress.finished):
+            self._judged = True
             self.reason = self._ended()
         return self.reason is not None
 
@@ -150,7 +156,7 @@ class Schedule:
             if target > 0.0:
                 self.confidence = 1.0 - 2.0 * _MISTAKE / 2.0 ** (self._looks + 1)
                 self._looks += 1
-                self.error = self.session.error(self.confidence)
+                self.error = self._checked = self.session.error(self.confidence)
                 self._bound = self._compared()
                 if self._bound <= target:
                     return TARGET
@@ -169,7 +175,7 @@ class Schedule:
 
     def _ratio(self):
         """Return the target of the picture before denoising, as a multiple of the target."""
-        return self.error.bound / self._bound if self._bound and self.error.known else 1.0
+        return self._checked.bound / self._bound if self._bound and self._checked.known else 1.0
 
     def _refine(self):
         """Start a round of refinement; return False if no pixel can be doubled: all then have the largest power of two."""
@@ -188,6 +194,7 @@ class Schedule:
         return min(count, self.settings.samples - self.samples)
 
     def _finished(self, progress):
+        self._judged = False
         self._seconds_per_sample = (time.monotonic() - self._range[0]) / max(1, self._next)
         if self._stopping:
             self.reason = TIME

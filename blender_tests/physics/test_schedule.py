@@ -84,3 +84,28 @@ def test_what_a_target_still_needs_grows_with_the_square_of_the_error():
     seconds, reason = schedule.remaining()
     assert reason is TARGET and seconds == pytest.approx(96.0)
     assert math.isclose(schedule.error.bound, 0.2)
+
+
+@pytest.mark.parametrize("looks", [0, 3])
+def test_rounds_do_not_depend_on_how_often_a_picture_is_shown(looks):
+    """Whoever shows a picture asks whether it is the last one, and reads its error, at times that no clock repeats."""
+    asked = []
+
+    class Refined(GivenSession):
+        def error(self, confidence=0.95):
+            # As in the library, the interval widens with the confidence.
+            return error(0.1, 0.1 / (1.0 - confidence))
+
+        def refine(self, target, confidence):
+            asked.append((target, confidence))
+            self.ranges.append((0, 1))
+            return True
+
+    schedule = Schedule(Refined(target_error=0.1, samples=1024))
+    while len(asked) < 4:
+        assert schedule.start() and schedule.wait(0.0).finished
+        for _ in range(looks):
+            assert not schedule.over
+            schedule.look()
+    # Each check may be wrong with half the probability of the one before.
+    assert asked == [(0.1, 1.0 - 0.1 / 2.0**n) for n in range(1, 5)]
