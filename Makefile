@@ -194,7 +194,7 @@ ready-run ready-test: ready-%: packages-%
 	@$(MAKE) python-$* & python=$$!; $(MAKE) build; built=$$?; wait $$python && exit $$built
 
 python-bench: packages-run
-	@$(PYTHON) .ci/environment.py $(VENV) run bench --optional bench-mitsuba bench-luxcore bench-embree
+	@$(PYTHON) .ci/environment.py $(VENV) run bench farm --optional bench-mitsuba bench-luxcore bench-embree
 
 python-charts: packages-run
 	@$(PYTHON) .ci/environment.py $(VENV) run bench

@@ -11,7 +11,7 @@ from tools.harness.places import ROOT, digest_of_library, header
 from tools.harness.terminal import Progress, make_parser
 from tools.harness.workers import Failed
 
-from . import chart, classic, contest, extras, goals, jobs, page, plan, rays, window
+from . import chart, classic, contest, extras, goals, jobs, many_machines, page, plan, rays, window
 
 # Seconds that a short run waits for another renderer.
 _QUICK_LIMIT = 45.0
@@ -62,6 +62,7 @@ def measure_rest(figures, arguments, say):
     attempt(figures, "million", say, extras.prepare, rounds, "million", threads)
     attempt(figures, "instances", say, extras.prepare, rounds, "instances", threads)
     attempt(figures, "threads_scaling", say, extras.threads_scaling, rounds, arguments.quick)
+    attempt(figures, "many_machines", say, many_machines.measure, rounds, arguments.quick)
     for name in ("balls", "million"):
         path = str(jobs.OUTPUT / "scenes" / f"{name}-rays.npz")
         size = {"width": 640, "height": 480, "samples": 1}
