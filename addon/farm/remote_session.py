@@ -35,8 +35,8 @@ class RemoteSession:
         if decision is None:
             raise Cancelled
         self._decision = decision
-        self._splits = decision.split_lights, decision.split_paths
-        settings = self.settings.replaced(in_parts=True, split_lights=self._splits[0], split_paths=self._splits[1])
+        self.splits = decision.split_lights, decision.split_paths
+        settings = self.settings.replaced(in_parts=True, split_lights=self.splits[0], split_paths=self.splits[1])
         self._film = Session.joiner(digest, self.camera, settings, library)
         self.library = self._film.library
         self._pixels = self._film.tiles()
@@ -138,7 +138,7 @@ class RemoteSession:
                 break
             self._number = self._round.number
             self._waiting[task.number] = task
-            self.pool.submit(task, self._splits)
+            self.pool.submit(task, self.splits)
 
     def _take(self, done):
         """Join a part; hand its task out again if it is wrong. A task that has ended before is ignored."""
@@ -171,4 +171,4 @@ class RemoteSession:
             self.stop()
             raise PoolError(f"{_MOST_FAILURES} workers failed at the same samples; the last one, {self.refused[-1]}")
         self.pool.refuse(by, failure)
-        self.pool.submit(task, self._splits)
+        self.pool.submit(task, self.splits)

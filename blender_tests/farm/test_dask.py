@@ -39,8 +39,8 @@ worker.render = render
 
 def snapshot(**settings):
     plain = rich()
-    camera = dataclasses.replace(plain.camera, width=60, height=44, region_width=60, region_height=44)
-    settings = {"samples": 200, "split_lights": 0, "split_paths": 0, "passes": (0, 1, 24)} | settings
+    camera = dataclasses.replace(plain.camera, width=80, height=60, region_width=80, region_height=60)
+    settings = {"samples": 128, "split_lights": 0, "split_paths": 0, "passes": (0, 1, 24)} | settings
     return dataclasses.replace(plain, camera=camera, settings=plain.settings.replaced(**settings))
 
 
@@ -96,6 +96,8 @@ def test_two_workers_give_the_bits_of_one_process(cluster, by_samples):
     session = render(cluster, snapshot(), by_samples)
     assert len(session.makers) == 2 and not session.refused
     assert by_samples[2] is SAMPLES
+    # Workers that decided for themselves would not be noticed where a sample follows one light and one path.
+    assert max(session.splits) > 1
 
 
 def test_rounds_to_a_target_error_are_those_of_one_process(cluster):
@@ -136,7 +138,8 @@ def test_a_worker_that_sends_rubbish_is_named_and_avoided(cluster, by_samples):
     cluster.start_worker(RUBBISH)
     cluster.wait_for_workers(3)
     session = render(cluster, snapshot(), by_samples)
-    assert 1 <= len(session.refused) <= 2 and all("damaged" in sentence for sentence in session.refused)
+    # It is avoided after two wrong parts; of the tasks that are handed out by then, two for each worker, it may have the rest.
+    assert 1 <= len(session.refused) <= 2 + 2 * 3 and all("damaged" in sentence for sentence in session.refused)
     named = {sentence.split(": ")[0] for sentence in session.refused}
     assert len(named) == 1 and named.isdisjoint(session.makers)
 
