@@ -277,7 +277,9 @@ def structs_text(header):
             sys.exit(f"A parameter of lancer_{name} lacks its [kind default] in the comment.")
     kinds = ["# Kind and default of each parameter, from lancer.h.", "PARAMETERS = {"]
     kinds += [line for name in described for line in parameter_lines(name, found[name]["body"])] + ["}"]
-    used = sorted(set(re.findall(r"\bc_\w+", "\n".join(classes))) | {"c_void_p"})
+    names = set(re.findall(r"\bc_\w+", "\n".join(classes))) | {"c_void_p"}
+    # The formatter's order: numbers within names by their value.
+    used = sorted(names, key=lambda name: [int(part) if part.isdigit() else part for part in re.split(r"(\d+)", name)])
     head = [
         HEAD.format(what="The structs of the interface in ctypes, field by field."),
         f"from ctypes import POINTER, Structure, {', '.join(used)}\n",

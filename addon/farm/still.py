@@ -24,8 +24,11 @@ def render_still(session, tell=None, poll=None):
     if getattr(session, "pool", None) is not None:
         schedule.longest = LONGEST
     while schedule.start():
-        while not (progress := schedule.wait(_STEP)).finished:
-            if poll is not None and poll():
+        finished = False
+        while not finished:
+            progress = schedule.wait(_STEP)
+            finished = progress.finished
+            if not finished and poll is not None and poll():
                 schedule.cancel()
             elif tell is not None:
                 if schedule.samples > 1 and reading.due:

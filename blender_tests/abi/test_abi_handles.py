@@ -27,6 +27,7 @@ def calls_on_scenes(raw):
         "lancer_scene_set_object_infos": (0, pointer),
         "lancer_scene_add_object_attribute": (b"heat", 0, pointer),
         "lancer_scene_set_world": (ctypes.byref(raw.keep(raw.world())),),
+        "lancer_scene_set_digest": (b"d" * 32,),
         "lancer_scene_commit": (0, 1),
         "lancer_scene_wait": (0,),
         "lancer_scene_cancel": (),
@@ -57,6 +58,14 @@ def calls_on_sessions(raw):
         "lancer_session_stop": (),
         "lancer_session_refine": (0.1, 0.95),
         "lancer_session_error": (0.95, ctypes.byref(error)),
+        "lancer_session_tiles": (0, None, ctypes.byref(count)),
+        "lancer_session_decide": (),
+        "lancer_session_plan": (0.1, 0.95, 0, None, ctypes.byref(count)),
+        "lancer_session_render_ranges": (0, None),
+        "lancer_session_clear": (),
+        "lancer_session_export": (None, 0, None),
+        # The part is checked only for a session that is there.
+        "lancer_session_import": (pointer, 16),
         "lancer_session_read": (0, pointer, 4),
         "lancer_session_statistics": (ctypes.byref(statistics),),
         "lancer_debug_sample": (0, 0, 0, pointer, None, 0, ctypes.byref(count)),
@@ -73,6 +82,8 @@ def test_every_call_with_a_handle_is_tried_here(raw):
         "lancer_probe_sampler",
         "lancer_probe_filter",
         "lancer_evaluate_node",
+        "lancer_part_describe",
+        "lancer_session_create_joiner",
     }
     assert set(calls_on_scenes(raw)) | set(calls_on_sessions(raw)) | known == set(abi._CALLS)
 
@@ -111,7 +122,7 @@ def test_scene_and_session_handles_are_not_mixed_up(raw):
 def test_null_pointers(raw):
     scene, committed = raw.filled(), raw.committed()
     session = raw.session(committed)
-    array = np.zeros(64)
+    array, made = np.zeros(64), ctypes.c_uint64()
     p = array.ctypes.data
     cases = [
         ("lancer_scene_create", None),
@@ -128,6 +139,16 @@ def test_null_pointers(raw):
         ("lancer_session_create", committed, None, ctypes.byref(raw.settings()), ctypes.byref(ctypes.c_uint64())),
         ("lancer_session_create", committed, ctypes.byref(raw.camera()), None, ctypes.byref(ctypes.c_uint64())),
         ("lancer_session_create", committed, ctypes.byref(raw.camera()), ctypes.byref(raw.settings()), None),
+        ("lancer_scene_set_digest", scene, None),
+        ("lancer_session_create_joiner", None, ctypes.byref(raw.camera()), ctypes.byref(raw.settings()), ctypes.byref(made)),
+        ("lancer_session_create_joiner", b"d" * 32, None, ctypes.byref(raw.settings()), ctypes.byref(made)),
+        ("lancer_session_create_joiner", b"d" * 32, ctypes.byref(raw.camera()), None, ctypes.byref(made)),
+        ("lancer_session_create_joiner", b"d" * 32, ctypes.byref(raw.camera()), ctypes.byref(raw.settings()), None),
+        ("lancer_session_tiles", session, 4, None, ctypes.byref(ctypes.c_uint32())),
+        ("lancer_session_tiles", session, 0, None, None),
+        ("lancer_session_render_ranges", session, 1, None),
+        ("lancer_session_import", session, None, 0),
+        ("lancer_part_describe", None, 0, None),
         ("lancer_session_read", session, 0, None, 16 * 16 * 4),
         ("lancer_session_statistics", session, None),
         ("lancer_debug_sample", session, 0, 0, 0, None, None, 4, None),

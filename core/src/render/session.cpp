@@ -176,6 +176,7 @@ void Session::decide() {
   range_samples_ = 0;
   in_ranges_ = false;
   start();
+  deciding_ = true;
 }
 
 void Session::render(std::span<const lancer_range> ranges) {
@@ -263,6 +264,7 @@ void Session::add(const Part &part) {
 }
 
 void Session::start() {
+  deciding_ = false;
   samples_before_ = samples_;
   seconds_before_ = seconds();
   cancel_ = stop_ = false;
@@ -396,8 +398,7 @@ Session::State Session::wait(uint32_t milliseconds, Progress &progress) {
     progress.samples = samples_;
   }
   // A search for the splits that is cancelled leaves nothing to continue.
-  cancelled_ =
-      cancelled_ || (cancel_ && (progress.samples - samples_before_ < range_samples_ || (tasks_.empty() && !prepared_)));
+  cancelled_ = cancelled_ || (cancel_ && (progress.samples - samples_before_ < range_samples_ || (deciding_ && !prepared_)));
   return cancelled_ ? State::Cancelled : State::Done;
 }
 

@@ -135,6 +135,7 @@ private:
   std::unique_ptr<std::latch> background_found_; // set while a range starts by searching the background
   std::atomic<bool> prepared_{false};            // background and splits have been found
   bool in_ranges_ = false;                       // the last range was one of render(ranges)
+  bool deciding_ = false;                        // the last start was decide()
   Totals added_, forgotten_;                     // of parts; of the workers' samples before clear()
   double planned_samples_ = 0.0;
   bool cancelled_ = false, failed_ = false;
