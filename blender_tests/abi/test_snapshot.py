@@ -5,7 +5,7 @@ import weakref
 
 import numpy as np
 import pytest
-from rich_snapshot import rich
+from rich_snapshot import changed, leaves, rich
 from tiny_scenes import showroom
 
 from addon.bindings import structs
@@ -20,38 +20,6 @@ def saved(tmp_path):
     path = str(tmp_path / "scene.npz")
     rich().save(path)
     return path
-
-
-def leaves(item, path=()):
-    """Yield the path of every number, string and array in a record."""
-    if dataclasses.is_dataclass(item):
-        for field in dataclasses.fields(item):
-            yield from leaves(getattr(item, field.name), (*path, field.name))
-    elif isinstance(item, tuple):
-        for number, part in enumerate(item):
-            yield from leaves(part, (*path, number))
-    elif item is not None:
-        yield path
-
-
-def changed(item, path):
-    """Return a copy in which the leaf at the path differs in one number."""
-    if path:
-        key, rest = path[0], path[1:]
-        if isinstance(item, tuple):
-            return (*item[:key], changed(item[key], rest), *item[key + 1 :])
-        return dataclasses.replace(item, **{key: changed(getattr(item, key), rest)})
-    if isinstance(item, np.ndarray):
-        copy = item.copy()
-        flat = copy.reshape(-1)
-        # Keep indices valid: name 7 of 8 becomes name 6.
-        flat[-1] = np.nextafter(flat[-1], flat.dtype.type(np.inf)) if copy.dtype.kind == "f" else flat[-1] ^ 1
-        return copy
-    if isinstance(item, str):
-        return item + "x"
-    if isinstance(item, bool):
-        return not item
-    return item + 1 if isinstance(item, int) else float(np.nextafter(item, np.inf))
 
 
 def differs(item, path, from_this):

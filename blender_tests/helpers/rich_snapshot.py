@@ -1,4 +1,4 @@
-"""A snapshot with a record of every kind."""
+"""A snapshot with a record of every kind, and copies of it that differ in one number."""
 
 import dataclasses
 
@@ -59,3 +59,35 @@ def rich():
         materials=(*room.materials, paint),
         world=World(radiance=NodeRef(1), nodes=(Node(), dataclasses.replace(seen, kind=NodeKind.ENVIRONMENT))),
     )
+
+
+def leaves(item, path=()):
+    """Yield the path of every number, string and array in a record."""
+    if dataclasses.is_dataclass(item):
+        for field in dataclasses.fields(item):
+            yield from leaves(getattr(item, field.name), (*path, field.name))
+    elif isinstance(item, tuple):
+        for number, part in enumerate(item):
+            yield from leaves(part, (*path, number))
+    elif item is not None:
+        yield path
+
+
+def changed(item, path):
+    """Return a copy in which the leaf at the path differs in one number."""
+    if path:
+        key, rest = path[0], path[1:]
+        if isinstance(item, tuple):
+            return (*item[:key], changed(item[key], rest), *item[key + 1 :])
+        return dataclasses.replace(item, **{key: changed(getattr(item, key), rest)})
+    if isinstance(item, np.ndarray):
+        copy = item.copy()
+        flat = copy.reshape(-1)
+        # Keep indices valid: name 7 of 8 becomes name 6.
+        flat[-1] = np.nextafter(flat[-1], flat.dtype.type(np.inf)) if copy.dtype.kind == "f" else flat[-1] ^ 1
+        return copy
+    if isinstance(item, str):
+        return item + "x"
+    if isinstance(item, bool):
+        return not item
+    return item + 1 if isinstance(item, int) else float(np.nextafter(item, np.inf))

@@ -167,6 +167,13 @@ def showroom(pixels=32, **settings):
     return scene(instances, materials, lights, [quad(1.5)], (0.1, 0.15, 0.2), camera, **{**defaults, **settings})
 
 
+def overflowing(side=16, **settings):
+    """Return a floor right under a lamp: at its centre 1e30 W/sr over (1e-6 m)^2 exceeds float's 3.4e38, elsewhere not."""
+    lamp = Light("lamp", move(z=1e-6), LightKind.POINT, emission=(1e30,) * 3)
+    camera = Camera(look_at((0.0, 0.0, 2.0), (0.0, 0.0, 0.0)), width=side, height=side, window=(-1e-4, 1e-4, -1e-4, 1e-4))
+    return scene([plane(0)], [lambert(0.5)], [lamp], camera=camera, **{"samples": 4, "threads": 2, **settings})
+
+
 def with_settings(snapshot, **fields):
     return dataclasses.replace(snapshot, settings=dataclasses.replace(snapshot.settings, **fields))
 

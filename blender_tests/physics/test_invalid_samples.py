@@ -5,22 +5,13 @@ import numpy as np
 import pytest
 import tiny_scenes
 from blenders import MODULE
-from tiny_scenes import lambert, look_at, move, plane, rotate_x
+from tiny_scenes import lambert, look_at, move, overflowing, plane, rotate_x
 
 from addon.bindings.enums import LightKind, LobeKind, Pass
 from addon.bindings.session import Session
 from addon.bindings.snapshot import Camera, Light, Lobe, Material
 
 SIDE, SAMPLES = 16, 4
-
-
-def overflowing(side=SIDE, **settings):
-    """Return a floor right under a lamp: at its centre 1e30 W/sr over (1e-6 m)^2 exceeds float's 3.4e38, elsewhere not."""
-    lamp = Light("lamp", move(z=1e-6), LightKind.POINT, emission=(1e30,) * 3)
-    camera = Camera(look_at((0.0, 0.0, 2.0), (0.0, 0.0, 0.0)), width=side, height=side, window=(-1e-4, 1e-4, -1e-4, 1e-4))
-    return tiny_scenes.scene(
-        [plane(0)], [lambert(0.5)], [lamp], camera=camera, **{"samples": SAMPLES, "threads": 2, **settings}
-    )
 
 
 def replays(session, side, samples):
