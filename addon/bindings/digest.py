@@ -36,5 +36,5 @@ def _add(digest, value):
         digest.update(b"text %d;" % len(text) + text)
     else:
         # The shortest text of a number is the same in every Python; enums and numpy's numbers count as plain ones.
-        plain = value if value is None or isinstance(value, bool) else float(value)
+        plain = value if value is None else bool(value) if isinstance(value, (bool, np.bool_)) else float(value)
         digest.update(f"value {plain!r};".encode())
