@@ -88,11 +88,16 @@ def render(name, data, splits, ranges, threads=0, address=""):
     with _lock:
         before = time.perf_counter()
         session = _session(name, data, splits, threads)
-        session.clear()
-        session.render_ranges(ranges)
-        _finish(session)
-        part = session.export()
-        session.clear()
+        try:
+            session.clear()
+            session.render_ranges(ranges)
+            _finish(session)
+            part = session.export()
+            session.clear()
+        except BaseException:
+            # A session whose range has failed renders nothing more.
+            _sessions.pop((name, tuple(splits))).close()
+            raise
         return Made(part, time.perf_counter() - before, (address,), session.statistics().instruction_set)
 
 
@@ -119,7 +124,9 @@ class WrongPart(LancerError):
     def __init__(self, by, text):
         super().__init__(text)
         self.by = by
-        self.args = (by, text)
+
+    def __reduce__(self):
+        return WrongPart, (self.by, str(self))
 
 
 def _finish(session):
