@@ -8,8 +8,9 @@ import math
 import time
 from collections import Counter
 
-from ..bindings.abi import LancerError
+from ..bindings.abi import LancerError, Status
 from ..bindings.digest import scene_digest
+from ..bindings.parts import describe_part
 from ..bindings.session import Cancelled, Progress, Session, Statistics
 from . import worker
 from .cut import Round, whole_range
@@ -40,7 +41,7 @@ class RemoteSession:
         self._film = Session.joiner(digest, self.camera, settings, library)
         self.library = self._film.library
         self._pixels = self._film.tiles()
-        self._round = None
+        self._round = Round(whole_range(0, 0, 0), self._pixels)
         self._waiting = {}  # tasks by number
         self._failures = Counter()
         self._number = 0
@@ -150,8 +151,11 @@ class RemoteSession:
             made = done.made
             self.bytes += made.part.nbytes
             try:
+                self._require_samples(done.task, made.part)
                 self._film.add(made.part)
             except LancerError as error:
+                if error.status is Status.ERROR_MEMORY:
+                    raise
                 failure, by = str(error), made.by
         if failure:
             self._again(done.task, failure, by)
@@ -163,6 +167,12 @@ class RemoteSession:
         if made.seconds > 0.0 and math.isfinite(made.seconds):
             rate = done.task.samples / made.seconds
             self._rate = 0.5 * (self._rate + rate) if self._rate else rate
+
+    def _require_samples(self, task, part):
+        """Raise LancerError for a part of other samples than its task's: they would be missing without a word."""
+        about, first, end = describe_part(part, self.library), task.ranges["first"], task.ranges["first"] + task.ranges["count"]
+        if (about.tiles, about.samples, about.first, about.end) != (len(first), task.samples, first.min(), end.max()):
+            raise LancerError("part: it has other samples than its task")
 
     def _again(self, task, failure, by):
         self._failures[task.number] += 1
