@@ -5,9 +5,10 @@ import sys
 from pathlib import Path
 
 from ..bindings.abi import LancerError
-from ..bindings.npz import SnapshotError
+from ..bindings.session import Cancelled
 from . import frames_command, parts_command, render_command
-from .exit_codes import DONE, FAILED
+from .arguments import threads
+from .exit_codes import DONE, FAILED, WRONG_USE, WrongUse
 from .pool import PoolError
 
 
@@ -19,7 +20,7 @@ def parser():
     frames_command.add_parser(commands)
     worker = commands.add_parser("worker", help="work for a scheduler with all processors of this machine")
     worker.add_argument("address", help="of a Dask scheduler, as tcp://host:8786")
-    worker.add_argument("--threads", type=int, default=0, help="of a render; default: one per processor")
+    worker.add_argument("--threads", type=threads, default=0, help="of a render; default: one per processor")
     worker.set_defaults(run=_work)
     relay = commands.add_parser("relay", help="speak to a scheduler for Blender")
     relay.add_argument("address")
@@ -37,12 +38,19 @@ def main(arguments=None):
     chosen = top.parse_args(given)
     try:
         return chosen.run(chosen) or DONE
-    except (LancerError, SnapshotError, PoolError, OSError, MemoryError) as error:
-        sys.stderr.write(f"lancer: {error or type(error).__name__}\n")
-        return FAILED
-    except KeyboardInterrupt:
-        sys.stderr.write("lancer: interrupted\n")
-        return FAILED
+    except WrongUse as error:
+        return _end(error, WRONG_USE)
+    except MemoryError:
+        return _end("there is not enough memory for this scene", FAILED)
+    except (LancerError, PoolError, OSError) as error:
+        return _end(error, FAILED)
+    except (Cancelled, KeyboardInterrupt):
+        return _end("interrupted", FAILED)
+
+
+def _end(text, code):
+    sys.stderr.write(f"lancer: {text}\n")
+    return code
 
 
 def _work(arguments):
