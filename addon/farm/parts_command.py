@@ -1,55 +1,64 @@
 """The commands `part` and `merge`: a still on farms that only run programs and share files."""
 
+import argparse
+import contextlib
 import os
 import tempfile
 from pathlib import Path
 
-from ..bindings import bug_report
-from ..bindings.abi import LancerError
+from ..bindings.abi import LancerError, Status
 from ..bindings.digest import scene_digest
 from ..bindings.parts import describe_part
 from ..bindings.session import Scene, Session
-from ..measure.schedule import SAMPLES
+from ..measure.schedule import SAMPLES, Schedule
+from . import picture_file
+from .arguments import count, loaded, require_folder, threads
 from .cut import whole_range
+from .exit_codes import DONE, WrongUse
 from .render_snapshot import rendered_of
 
+# Ending of files of parts that `merge` writes.
+_PART = ".lancer"
+# Seconds between looks at a running range.
 _STEP = 0.1
-# The most bytes of a part that is read.
-_MOST_BYTES = 1 << 36
 
 
 def add_parsers(subparsers):
+    """Add both commands, as render_command.add_parser does."""
     part = subparsers.add_parser("part", help="render some samples of a snapshot into a file", description=render_part.__doc__)
     part.add_argument("snapshot", type=Path, help="a snapshot (.npz) or a bug report (.zip)")
-    part.add_argument("--samples", type=int, required=True, help="of the whole picture, per pixel")
+    part.add_argument("--samples", type=count, required=True, help="of the whole picture, per pixel")
     part.add_argument("--part", type=_share, required=True, metavar="I/N", help="the I-th of N parts, from 1")
-    part.add_argument("--output", type=Path, required=True)
-    part.add_argument("--threads", type=int, default=0)
+    part.add_argument("--output", type=Path, required=True, help="file of the part")
+    part.add_argument("--threads", type=threads, default=0, help="default: one per processor")
     part.set_defaults(run=render_part)
     merge = subparsers.add_parser("merge", help="join parts to a picture", description=merge_parts.__doc__)
-    merge.add_argument("parts", type=Path, nargs="+")
+    merge.add_argument("parts", type=Path, nargs="+", help="files of parts, in any order")
     merge.add_argument("--output", type=Path, required=True, help="a picture (.exr, .png), or a part (.lancer) to join later")
     merge.set_defaults(run=merge_parts)
 
 
 def _share(text):
-    number, _, count = text.partition("/")
-    number, count = int(number), int(count)
-    if not 1 <= number <= count:
-        raise ValueError
-    return number, count
+    """Return (I, N) of "I/N"."""
+    number, _, of = text.partition("/")
+    if count(number) > count(of):
+        raise argparse.ArgumentTypeError(f"{text} is no part from 1/{of} to {of}/{of}")
+    return int(number), int(of)
 
 
 def render_part(arguments):
     """Render samples (I - 1) / N to I / N of the picture; a file that has them already is left as it is."""
-    number, count = arguments.part
-    begin, end = (arguments.samples * i // count for i in (number - 1, number))
-    snapshot, _ = bug_report.load(arguments.snapshot)
+    number, parts = arguments.part
+    if parts > arguments.samples:
+        raise WrongUse(f"{arguments.samples} samples are too few for {parts} parts")
+    begin, end = (arguments.samples * i // parts for i in (number - 1, number))
+    require_folder(arguments.output)
+    snapshot, _ = loaded(arguments.snapshot)
     digest = scene_digest(snapshot)
     settings = snapshot.settings.replaced(in_parts=True, samples=arguments.samples, threads=arguments.threads)
     snapshot.set("settings", settings)
-    if arguments.output.exists() and _holds(arguments.output, digest, begin, end):
-        return 0
+    if _is_rendered(arguments.output, Session.joiner(digest, snapshot.camera, settings), begin, end):
+        return DONE
     with Scene.upload(snapshot, release=True) as scene:
         scene.set_digest(digest)
         with Session(scene, snapshot.camera, settings) as session:
@@ -57,59 +66,79 @@ def render_part(arguments):
             while not session.wait(_STEP).finished:
                 pass
             write_whole(arguments.output, session.export())
-    return 0
+    return DONE
 
 
-def _holds(path, digest, begin, end):
-    """Whether a file is a part of this scene with these samples."""
-    try:
-        info = describe_part(path.read_bytes())
-    except LancerError:
-        return False
-    return (info.digest, info.first, info.end) == (digest, begin, end)
+def _is_rendered(path, joiner, begin, end):
+    """Whether a file has exactly these samples of the joiner's picture."""
+    with joiner:
+        try:
+            part = path.read_bytes()
+            about = describe_part(part)
+            joiner.add(part)
+        except (FileNotFoundError, LancerError):
+            return False
+        samples = int(joiner.tiles().sum()) * (end - begin)
+        # Other parts of the picture ask for the same number of samples: it decides whether numbers of lights are searched.
+        planned = about.settings.samples == joiner.settings.samples
+        return planned and (about.first, about.end, about.samples) == (begin, end, samples)
 
 
 def merge_parts(arguments):
     """Join parts in any order, and write the picture when no samples are missing."""
-    session = None
-    for path in arguments.parts:
-        if path.stat().st_size > _MOST_BYTES:
-            raise LancerError(f"{path} is larger than any part")
-        part = path.read_bytes()
-        try:
-            if session is None:
-                info = describe_part(part)
-                session = Session.joiner(info.digest, info.camera, info.settings)
-            session.add(part)
-        except LancerError as error:
-            raise LancerError(f"{path}: {error}") from error
-    error = session.error()
-    if arguments.output.suffix == ".lancer":
-        write_whole(arguments.output, session.export())
-        return 0
-    planned = session.settings.samples
-    if error.least_samples < planned:
-        raise LancerError(f"{planned - error.least_samples} of {planned} samples are missing: give all parts")
-    rendered_of(session, Joined(session)).save(arguments.output)
-    return 0
+    # Learn before the work that its file cannot be written.
+    is_part = arguments.output.suffix.lower() == _PART
+    require_folder(arguments.output)
+    if not is_part:
+        what = picture_file.fault(arguments.output)
+        if what:
+            raise WrongUse(what)
+        picture_file.library()
+    with contextlib.ExitStack() as stack:
+        session = None
+        for path in arguments.parts:
+            with _told_of(path):
+                part = path.read_bytes()
+                about = describe_part(part)
+                if session is None:
+                    session = stack.enter_context(Session.joiner(about.digest, about.camera, about.settings))
+                _require_planned(about, session.settings.samples)
+                session.add(part)
+        if is_part:
+            write_whole(arguments.output, session.export())
+            return DONE
+        missing = session.settings.samples - session.error().least_samples
+        if missing:
+            raise WrongUse(f"{missing} of {session.settings.samples} samples are missing: give all parts")
+        schedule = Schedule(session)
+        schedule.reason = SAMPLES
+        rendered_of(session, schedule).save(arguments.output)
+    return DONE
 
 
-class Joined:
-    """What render_report.account asks of a Schedule, of parts that other processes have rendered."""
+@contextlib.contextmanager
+def _told_of(path):
+    """Context in which errors are about a file; a wrong file is wrong use."""
+    try:
+        yield
+    except FileNotFoundError:
+        raise WrongUse(f"{path}: there is no such file") from None
+    except LancerError as error:
+        kind = LancerError if error.status is Status.ERROR_MEMORY else WrongUse
+        raise kind(f"{path}: {error}") from error
 
-    reason, of_denoised = SAMPLES, False
 
-    def __init__(self, session):
-        self.pixels = session.camera.region_width * session.camera.region_height
+def _require_planned(about, samples):
+    """Raise LancerError for a part of a picture of another number of samples: joined to others it would leave gaps."""
+    if about.settings.samples != samples:
+        raise LancerError(f"part: its picture has {about.settings.samples} samples, that of the first part {samples}")
+    if about.end > samples:
+        raise LancerError(f"part: it has sample {about.end - 1} of a picture of {samples} samples")
 
 
 def write_whole(path, data):
     """Write a file that is complete or not there: another machine may look at it at any time."""
-    descriptor, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
-    try:
-        with os.fdopen(descriptor, "wb") as file:
-            file.write(data)
-        os.replace(name, path)
-    except BaseException:
-        os.unlink(name)
-        raise
+    with tempfile.TemporaryDirectory(prefix=f".{path.name}.", dir=path.parent) as place:
+        whole = Path(place, path.name)
+        whole.write_bytes(data)
+        os.replace(whole, path)
