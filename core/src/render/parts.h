@@ -49,8 +49,9 @@ public:
   const lancer_part &description() const { return description_; }
   Identity identity() const;
   // Adds the samples to a film of the same picture, whose sums the part's must fit; throws Error and leaves the film unchanged
-  // if they do not fit or overlap the film's. Returns the part's totals.
-  Totals add_to(Film &film) const;
+  // if they do not fit or overlap the film's, or if memory runs out. others: the totals of the parts in the film. Returns the
+  // sum of these and the part's.
+  Totals add_to(Film &film, const Totals &others) const;
 
 private:
   std::span<const std::byte> bytes_;

@@ -4,8 +4,10 @@
 #include "render/parts.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <tuple>
 
 namespace lancer {
@@ -66,6 +68,43 @@ struct Incoming {
   SampleAddress first_dropped{0, 0, 0};
 };
 
+// Whether each sum can be one of finite floats. Others, far too large or too small, would leave the range of the numbers that
+// passes and errors are computed from.
+bool are_sums_of_floats(const Film::Node &node) {
+  const double most = std::ldexp(double(std::numeric_limits<float>::max()), int(node.level));
+  constexpr double kLeast = double(std::numeric_limits<float>::denorm_min());
+  return std::ranges::all_of(node.sums.channels,
+                             [&](double sum) { return sum == 0.0 || (std::abs(sum) >= kLeast && std::abs(sum) <= most); });
+}
+
+// Whether a tile can have dropped such samples: no more of any bit width than it has, and the first one of the lowest.
+bool are_dropped(const Incoming &incoming, const Film::Tile &tile) {
+  const SampleAddress &first = incoming.first_dropped;
+  uint64_t of_width[kMostWidths] = {};
+  bool has_first = false;
+  for (const Film::Node &node : incoming.nodes) {
+    has_first |= node.start <= first.sample && first.sample < node.end();
+    // All samples of a node have the width of its start, unless it starts at 0.
+    if (node.start > 0)
+      of_width[std::bit_width(node.start)] += node.end() - node.start;
+    for (uint32_t width = 0; node.start == 0 && width <= node.level; ++width)
+      of_width[width] += width > 0 ? uint64_t(1) << (width - 1) : 1;
+  }
+  size_t lowest = 0;
+  for (size_t width = incoming.dropped.size(); width-- > 0;) {
+    if (incoming.dropped[width] > of_width[width] * tile.pixels())
+      return false;
+    if (incoming.dropped[width] > 0)
+      lowest = width;
+  }
+  if (!has_first || incoming.dropped.back() == 0 || lowest != size_t(std::bit_width(first.sample)))
+    return false;
+  for (uint32_t pixel = 0; pixel < tile.pixels(); ++pixel)
+    if (tile.place(pixel) == glm::uvec2(first.x, first.y))
+      return true;
+  return false;
+}
+
 // Reads a tile with a number above the last one's.
 Incoming read_tile(Reader &reader, const Film &film, int64_t last) {
   Incoming incoming;
@@ -76,8 +115,10 @@ Incoming read_tile(Reader &reader, const Film &film, int64_t last) {
   const Film::Tile &tile = film.tile(incoming.tile);
   const size_t pixels = tile.pixels();
   const Film::Channels channels = film.channels_of_pixel();
-  if (pixels == 0 || count > kMostWidths * 2)
-    refuse_damaged("tile " + std::to_string(incoming.tile) + " has no such sums");
+  if (pixels == 0)
+    refuse_damaged("tile " + std::to_string(incoming.tile) + " has no pixels");
+  if (count > reader.left() / (2 * sizeof(uint32_t)))
+    refuse_damaged("its size fits no tiles");
   // Check the order of the sums.
   uint64_t end = 0;
   for (uint32_t i = 0; i < count; ++i) {
@@ -96,16 +137,20 @@ Incoming read_tile(Reader &reader, const Film &film, int64_t last) {
     reader.numbers(node.sums.channels, pixels * channels.summed);
     reader.numbers(node.sums.differences, pixels);
     reader.numbers(node.sums.color_differences, pixels * channels.differences);
+    if (!are_sums_of_floats(node))
+      refuse_damaged("a sum of tile " + std::to_string(incoming.tile) + " is no sum of its samples");
   }
   reader.numbers(incoming.brightest, pixels);
+  if (std::ranges::any_of(incoming.brightest, [](float value) { return value < 0.0f; }))
+    refuse_damaged("a largest luminance of tile " + std::to_string(incoming.tile) + " is negative");
   reader.numbers(incoming.first, first * pixels * channels.first);
   reader.numbers(incoming.dropped, dropped);
   if (dropped > 0) {
     SampleAddress &address = incoming.first_dropped;
     for (uint32_t *number : {&address.x, &address.y, &address.sample})
       *number = reader.number<uint32_t>();
-    if (address.x >= film.width() || address.y >= film.height())
-      refuse_damaged("a dropped sample is outside the picture");
+    if (!are_dropped(incoming, tile))
+      refuse_damaged("the dropped samples of tile " + std::to_string(incoming.tile) + " are not among its samples");
   }
   return incoming;
 }
@@ -141,20 +186,36 @@ void add(Incoming &&incoming, Film &film) {
     film.insert(tile, std::move(node));
 }
 
-Energy read_energy(Reader &reader) {
-  // The last digit has the rest of the sum, which is far below this.
-  constexpr int64_t kMost = int64_t(1) << 56;
-  Energy energy;
-  for (ExactSum *sum : {&energy.clipped, &energy.last, &energy.before_last}) {
+// Far above all totals of samples, and low enough that sums of two stay in the range of their numbers.
+constexpr int64_t kMostTotal = int64_t(1) << 60;
+
+// Whether no sum of the rays or of the light, whose rest is in the last digit, is too large.
+bool are_numbers(const Totals &totals) {
+  for (const uint64_t count : {totals.rays.camera, totals.rays.bounce, totals.rays.shadow, totals.vertices})
+    if (count > uint64_t(kMostTotal))
+      return false;
+  for (const ExactSum *sum : {&totals.energy.clipped, &totals.energy.last, &totals.energy.before_last})
+    if (const int64_t rest = sum->digits().back(); rest < -kMostTotal || rest > kMostTotal)
+      return false;
+  return true;
+}
+
+Totals read_totals(Reader &reader) {
+  Totals totals;
+  for (uint64_t *number : {&totals.rays.camera, &totals.rays.bounce, &totals.rays.shadow, &totals.vertices})
+    *number = reader.number<uint64_t>();
+  bool are_digits = true;
+  for (ExactSum *sum : {&totals.energy.clipped, &totals.energy.last, &totals.energy.before_last}) {
     std::array<int64_t, ExactSum::kDigits> digits;
     for (int64_t &digit : digits)
       digit = reader.number<int64_t>();
-    if (!std::all_of(digits.begin(), digits.end() - 1, [](int64_t digit) { return digit >= 0 && digit < 256; }) ||
-        std::abs(digits.back()) > kMost)
-      refuse_damaged("its sums of light are no numbers");
+    are_digits &= std::all_of(digits.begin(), digits.end() - 1, [](int64_t digit) { return digit >= 0 && digit < 256; });
     *sum = ExactSum(digits);
   }
-  return energy;
+  // Clamping removes absolute values.
+  if (!are_digits || !are_numbers(totals) || totals.energy.clipped.digits().back() < 0)
+    refuse_damaged("its sums of rays or light are no numbers");
+  return totals;
 }
 
 } // namespace
@@ -190,24 +251,31 @@ Identity Part::identity() const {
   return identity;
 }
 
-Totals Part::add_to(Film &film) const {
+Totals Part::add_to(Film &film, const Totals &others) const {
   Reader reader(bytes_.first(bytes_.size() - kPartEnd));
   reader.skip(kPartHead + sizeof description_);
-  Totals totals;
-  for (uint64_t *number : {&totals.rays.camera, &totals.rays.bounce, &totals.rays.shadow, &totals.vertices})
-    *number = reader.number<uint64_t>();
-  totals.energy = read_energy(reader);
+  Totals totals = read_totals(reader);
+  totals += others;
+  if (!are_numbers(totals))
+    refuse_part("its sums of rays or light, together with the session's, are no numbers");
   // Read and check all tiles, then make room for their sums, then add them.
   std::vector<Incoming> tiles;
   uint64_t samples = 0;
+  uint32_t first = ~0u, end = 0;
   while (reader.left() > 0) {
     tiles.push_back(read_tile(reader, film, tiles.empty() ? -1 : int64_t(tiles.back().tile)));
-    require_apart(tiles.back(), film.tile(tiles.back().tile));
-    for (const Film::Node &node : tiles.back().nodes)
-      samples += (node.end() - node.start) * film.tile(tiles.back().tile).pixels();
+    const std::vector<Film::Node> &nodes = tiles.back().nodes;
+    const Film::Tile &tile = film.tile(tiles.back().tile);
+    require_apart(tiles.back(), tile);
+    for (const Film::Node &node : nodes)
+      samples += (node.end() - node.start) * tile.pixels();
+    first = std::min(first, nodes.front().start);
+    end = std::max(end, uint32_t(nodes.back().end()));
   }
-  if (tiles.size() != description_.tiles || samples != description_.samples)
+  if (tiles.size() != description_.tiles)
     refuse_part("it is incomplete: " + std::to_string(tiles.size()) + " tiles of " + std::to_string(description_.tiles));
+  if (samples != description_.samples || std::min(first, end) != description_.first || end != description_.end)
+    refuse_damaged("its description tells other samples than its tiles have");
   for (const Incoming &incoming : tiles) {
     Film::Tile &tile = film.tile(incoming.tile);
     tile.nodes.reserve(tile.nodes.size() + incoming.nodes.size());

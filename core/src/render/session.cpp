@@ -250,7 +250,7 @@ void Session::add(const Part &part) {
   const bool takes_over = !has_splits() && samples_ == 0;
   if (!takes_over && splits != splits_)
     bad_argument("part: its samples have " + in_words(splits) + ", the session's " + in_words(splits_));
-  added_ += part.add_to(film_);
+  added_ = part.add_to(film_, added_);
   samples_ += description.samples;
   counted_samples_ += description.samples;
   if (!takes_over)
