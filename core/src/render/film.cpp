@@ -180,7 +180,8 @@ void Film::add_even(Tile &tile, uint32_t samples, const SampleResult &result) {
 void Film::insert(Tile &tile, Node &&node) const {
   const std::lock_guard lock(tile.mutex);
   tile.count += 1u << node.level;
-  auto at = std::find_if(tile.nodes.begin(), tile.nodes.end(), [&](const Node &other) { return other.start > node.start; });
+  auto at = std::upper_bound(tile.nodes.begin(), tile.nodes.end(), node.start,
+                             [](uint32_t start, const Node &other) { return start < other.start; });
   at = tile.nodes.insert(at, std::move(node));
   const auto join_with_next = [&](std::vector<Node>::iterator earlier) {
     const auto later = earlier + 1;

@@ -155,12 +155,19 @@ Incoming read_tile(Reader &reader, const Film &film, int64_t last) {
   return incoming;
 }
 
+// Both have their sums by rising start.
 void require_apart(const Incoming &incoming, const Film::Tile &tile) {
-  for (const Film::Node &node : incoming.nodes)
-    for (const Film::Node &other : tile.nodes)
-      if (node.start < other.end() && other.start < node.end())
-        refuse_part(samples_of(std::max(node.start, other.start), std::min(node.end(), other.end())) + " of tile " +
-                    std::to_string(incoming.tile) + ": the session has them already");
+  auto node = incoming.nodes.begin();
+  auto other = tile.nodes.begin();
+  while (node != incoming.nodes.end() && other != tile.nodes.end()) {
+    if (node->start < other->end() && other->start < node->end())
+      refuse_part(samples_of(std::max(node->start, other->start), std::min(node->end(), other->end())) + " of tile " +
+                  std::to_string(incoming.tile) + ": the session has them already");
+    if (node->start < other->start)
+      ++node;
+    else
+      ++other;
+  }
 }
 
 // Adds a tile's samples; allocates nothing.
