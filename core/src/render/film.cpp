@@ -279,7 +279,7 @@ double Film::mean_luminance(const Sums &sums, uint32_t level, uint32_t pixel) co
 // Stores the differences of two halves before they are joined; each half has 2^level samples.
 void Film::keep_differences(const Sums &earlier, uint32_t level, Sums &later) const {
   for (uint32_t pixel = 0; pixel < later.differences.size(); ++pixel)
-    later.differences[pixel] = float(mean_luminance(earlier, level, pixel) - mean_luminance(later, level, pixel));
+    later.differences[pixel] = nearest_float(mean_luminance(earlier, level, pixel) - mean_luminance(later, level, pixel));
   for (const Pass pass : layout_.halves)
     for (uint32_t pixel = 0; pixel < later.differences.size(); ++pixel) {
       const Pass of = halved(pass);
