@@ -26,6 +26,8 @@ LuminanceMap::LuminanceMap(const Film &film) : width(film.width()), height(film.
   std::vector<double> means(pixels);
   for (size_t i = 0; i < film.tile_count(); ++i) {
     const Film::Tile &tile = film.tile(i);
+    if (tile.pixels() == 0)
+      continue;
     luminances.resize(tile.pixels());
     if (film.luminances(tile, luminances) == 0) {
       known = false;

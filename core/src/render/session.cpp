@@ -153,7 +153,7 @@ std::vector<lancer_range> Session::plan(double target, double confidence) {
     throw Error(Fault::State,
                 "session: every pixel needs " + std::to_string(Film::kLeastSamples) + " samples before it is refined");
   for (size_t i = 0; i < film_.tile_count(); ++i)
-    if (!std::has_single_bit(film_.tile(i).count))
+    if (film_.tile(i).pixels() > 0 && !std::has_single_bit(film_.tile(i).count))
       throw Error(Fault::State, "session: " + std::to_string(film_.tile(i).count) +
                                     " samples are not a power of two; only powers of two can be doubled");
   const RelativeVariance relative(map);
