@@ -162,10 +162,11 @@ void Film::add_even(Tile &tile, uint32_t samples, const SampleResult &result) {
     tile.brightest.resize(pixels);
   }
   gather(results, leaf, tile.brightest.data());
-  // Divide all samples into the largest subtrees.
-  const uint32_t from = tile.count == 0 ? tile.first_sample : tile.nodes.front().start, end = tile.next() + samples;
+  // Divide the samples into the largest subtrees.
   std::vector<Node> nodes;
-  for (uint32_t start = from; start < end;) {
+  uint32_t start = tile.next();
+  const uint32_t end = start + samples;
+  while (start < end) {
     const uint32_t largest = std::bit_floor(end - start), aligned = start == 0 ? largest : start & (0 - start);
     const auto level = uint32_t(std::countr_zero(std::min(largest, aligned)));
     nodes.push_back({start, level, leaf});
@@ -173,12 +174,17 @@ void Film::add_even(Tile &tile, uint32_t samples, const SampleResult &result) {
       channel *= double(1u << level);
     start += 1u << level;
   }
-  tile.nodes = std::move(nodes);
-  tile.count += samples;
+  tile.nodes.reserve(tile.nodes.size() + nodes.size());
+  for (Node &node : nodes)
+    insert_locked(tile, std::move(node));
 }
 
 void Film::insert(Tile &tile, Node &&node) const {
   const std::lock_guard lock(tile.mutex);
+  insert_locked(tile, std::move(node));
+}
+
+void Film::insert_locked(Tile &tile, Node &&node) const {
   tile.count += 1u << node.level;
   auto at = std::upper_bound(tile.nodes.begin(), tile.nodes.end(), node.start,
                              [](uint32_t start, const Node &other) { return start < other.start; });

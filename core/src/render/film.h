@@ -95,7 +95,7 @@ public:
   // Adds the next samples of all pixels of a tile: results[s][pixel] in order of sample. If memory runs out, the tile keeps the
   // samples counted so far.
   void add(Tile &tile, uint32_t samples, std::span<const SampleResult> results);
-  // Adds the next samples where they are equal in all pixels, to a tile that has no other samples.
+  // Adds the next samples where they are equal in all pixels.
   void add_even(Tile &tile, uint32_t samples, const SampleResult &result);
   // Adds a subtree of samples that the tile does not have, and joins all neighbours. Throws nothing if tile.nodes has room.
   void insert(Tile &tile, Node &&node) const;
@@ -156,6 +156,8 @@ private:
   };
 
   void keep_first(Tile &tile, std::span<const SampleResult> results) const;
+  // Inserts a node into a tile whose mutex is locked.
+  void insert_locked(Tile &tile, Node &&node) const;
   void gather(std::span<const SampleResult> results, Sums &sums, float *brightest) const;
   void keep_differences(const Sums &earlier, uint32_t level, Sums &later) const;
   glm::dvec3 mean_color(Pass pass, const Sums &sums, uint32_t level, uint32_t pixel) const;
