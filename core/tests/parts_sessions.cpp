@@ -22,7 +22,77 @@ lancer_scene empty_scene() {
   return scene;
 }
 
+MadeTile of_samples(uint32_t start, uint32_t level, uint32_t tile = 0) {
+  MadeTile made;
+  made.tile = tile;
+  made.nodes = {{start, level, std::ldexp(1.0, int(level))}};
+  return made;
+}
+
+// Both tiles have samples 0 ... 11, or tile 0 lacks four of them.
+Bytes twelve_samples(bool gap) {
+  MadeTile tiles[2] = {of_samples(0, 3), of_samples(0, 3, 1)};
+  tiles[0].nodes.push_back({gap ? 12u : 8u, 2, 4.0});
+  tiles[1].nodes.push_back({8u, 2, 4.0});
+  return Made({tiles[0], tiles[1]}).bytes();
+}
+
+TEST(PartsAndEnds, OfNoRangeChangeNothing) {
+  for (const auto &end : {lancer_session_cancel, lancer_session_stop})
+    for (const bool gap : {false, true}) {
+      const MadeJoiner joiner;
+      ASSERT_EQ(import(joiner.handle, twelve_samples(gap)), LANCER_OK) << lancer_last_error();
+      const Bytes before = exported(joiner.handle);
+      end(joiner.handle);
+      EXPECT_EQ(finish(joiner.handle), LANCER_OK);
+      EXPECT_EQ(before, exported(joiner.handle));
+      uint32_t count = 0;
+      EXPECT_EQ(lancer_session_plan(joiner.handle, 0.0, 0.95, 0, nullptr, &count), LANCER_ERROR_STATE);
+      EXPECT_EQ(std::string(lancer_last_error()).find("cancelled"), std::string::npos) << lancer_last_error();
+    }
+  const lancer_scene scene = named_scene();
+  const Owned session(scene, settings_of_parts());
+  lancer_session_cancel(session.handle);
+  EXPECT_EQ(finish(session.handle), LANCER_OK);
+  EXPECT_EQ(lancer_session_render(session.handle, 0, 1), LANCER_OK) << lancer_last_error();
+  EXPECT_EQ(finish(session.handle), LANCER_OK);
+  lancer_scene_destroy(scene);
+}
+
 // A stop drops the last samples of whole tiles; of a tile with gaps, no sum has all samples below a power of two.
+TEST(PartsAndEnds, KeepSumsAndCountsEqual) {
+  const lancer_scene scene = named_scene();
+  const Owned session(scene, made_settings(), make_camera(kMadeWidth, kMadeHeight));
+  ASSERT_EQ(lancer_session_render(session.handle, 0, 2), LANCER_OK);
+  ASSERT_EQ(finish(session.handle), LANCER_OK);
+  ASSERT_EQ(import(session.handle, Made({of_samples(4, 2), of_samples(2, 0, 1)}).bytes()), LANCER_OK) << lancer_last_error();
+  lancer_session_stop(session.handle);
+  ASSERT_EQ(finish(session.handle), LANCER_OK);
+  lancer_statistics statistics;
+  lancer_session_statistics(session.handle, &statistics);
+  EXPECT_EQ(statistics.samples, (6u + 2u) * kMadePixels);
+  const Bytes part = exported(session.handle);
+  const MadeJoiner joiner;
+  EXPECT_EQ(import(joiner.handle, part), LANCER_OK) << lancer_last_error();
+  lancer_scene_destroy(scene);
+}
+
+TEST(PartsAndEnds, AreForgottenByAClear) {
+  const lancer_scene scene = named_scene();
+  const Owned session(scene, settings_of_parts());
+  const lancer_range endless = {0, 0, 1u << 30};
+  ASSERT_EQ(lancer_session_render_ranges(session.handle, 1, &endless), LANCER_OK);
+  lancer_session_cancel(session.handle);
+  EXPECT_EQ(finish(session.handle), LANCER_CANCELLED);
+  ASSERT_EQ(lancer_session_clear(session.handle), LANCER_OK);
+  lancer_progress progress;
+  EXPECT_EQ(lancer_session_wait(session.handle, 0, &progress), LANCER_OK);
+  EXPECT_EQ(progress.samples, 0u);
+  EXPECT_EQ(lancer_session_render(session.handle, 0, 1), LANCER_OK) << lancer_last_error();
+  EXPECT_EQ(finish(session.handle), LANCER_OK);
+  lancer_scene_destroy(scene);
+}
+
 // A square of one pixel is a tile, and a tile without pixels.
 TEST(PartsOfSinglePixels, HaveAnErrorAndAreRefined) {
   const lancer_scene scene = named_scene();

@@ -242,6 +242,8 @@ Film::Dropped Film::dropped() const {
 
 void Film::round_down(Tile &tile) {
   const std::lock_guard lock(tile.mutex);
+  if (!tile.whole())
+    return;
   tile.count = std::bit_floor(tile.count);
   tile.nodes.resize(std::min<size_t>(tile.nodes.size(), 1));
   // The sample numbers below a power of two are those with a smaller bit width.

@@ -110,7 +110,7 @@ public:
   };
   // Returns the number of dropped samples and the first of them, among the samples that the film contains.
   Dropped dropped() const;
-  // Forgets the samples of a whole tile beyond the last power of two.
+  // Forgets the samples beyond the last power of two, unless some before them are missing.
   void round_down(Tile &tile);
   // Returns the least and the largest number of samples of a pixel.
   std::pair<uint32_t, uint32_t> sample_range() const;

@@ -221,8 +221,9 @@ void Session::clear() {
   for (size_t i = 0; i < film_.tile_count(); ++i)
     Film::clear(film_.tile(i), 0);
   samples_ = counted_samples_ = 0;
+  samples_before_ = range_samples_ = 0;
   planned_samples_ = 0.0;
-  cancelled_ = false;
+  cancelled_ = cancel_ = stop_ = false;
   added_ = {};
   forgotten_ = of_workers();
 }
@@ -393,6 +394,9 @@ Session::State Session::wait(uint32_t milliseconds, Progress &progress) {
   progress.fraction = range_samples_ ? std::min(1.0, done_samples / double(range_samples_)) : 1.0;
   if (!done)
     return State::Running;
+  // Without a range there is none to end.
+  if (!started_)
+    return State::Done;
   if (stop_ && !cancelled_ && !in_ranges_) {
     settle();
     progress.samples = samples_;
