@@ -135,5 +135,19 @@ TEST(PartsOfEvenBackgrounds, ContinueAfterGaps) {
   lancer_scene_destroy(scene);
 }
 
+TEST(PartsWithoutSamples, DecideNoSplits) {
+  const lancer_scene scene = named_scene();
+  lancer_settings settings = settings_of_parts(), told = settings;
+  settings.split_lights = settings.split_paths = 0;
+  const Owned undecided(scene, settings), session(scene, settings), worker(scene, told);
+  ASSERT_EQ(import(session.handle, exported(undecided.handle)), LANCER_OK) << lancer_last_error();
+  ASSERT_EQ(import(session.handle, exported(worker.handle)), LANCER_OK) << lancer_last_error();
+  ASSERT_EQ(import(session.handle, rendered(worker.handle, {{0, 0, 1}})), LANCER_OK) << lancer_last_error();
+  lancer_statistics statistics;
+  lancer_session_statistics(session.handle, &statistics);
+  EXPECT_EQ(statistics.split_lights, told.split_lights);
+  lancer_scene_destroy(scene);
+}
+
 // A camera that is far away in a large scene.
 } // namespace

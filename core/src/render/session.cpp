@@ -248,8 +248,10 @@ void Session::add(const Part &part) {
   };
   if (splits.lights == 0 || splits.paths == 0 || splits.lights > 16 || splits.paths > 16)
     bad_argument("part: its samples have " + in_words(splits));
-  const bool takes_over = !has_splits() && samples_ == 0;
-  if (!takes_over && splits != splits_)
+  // A part without samples may be of a session that has not found its splits.
+  const bool has_samples = description.samples > 0;
+  const bool takes_over = has_samples && !has_splits() && samples_ == 0;
+  if (has_samples && !takes_over && splits != splits_)
     bad_argument("part: its samples have " + in_words(splits) + ", the session's " + in_words(splits_));
   added_ = part.add_to(film_, added_);
   samples_ += description.samples;
