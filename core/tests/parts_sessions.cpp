@@ -149,5 +149,32 @@ TEST(PartsWithoutSamples, DecideNoSplits) {
   lancer_scene_destroy(scene);
 }
 
+TEST(PartsWithoutMemory, LetASessionStartAtSampleZero) {
+  const lancer_scene scene = named_scene();
+  const lancer_settings settings = made_settings();
+  const lancer_camera camera = make_camera(kMadeWidth, kMadeHeight);
+  const Owned whole(scene, settings, camera);
+  ASSERT_EQ(lancer_session_render(whole.handle, 0, 2), LANCER_OK);
+  ASSERT_EQ(finish(whole.handle), LANCER_OK);
+  const lancer_range range = {0, 5, 1};
+  uint64_t allowed = 0;
+  for (lancer_status status = LANCER_ERROR_MEMORY; status != LANCER_OK; ++allowed) {
+    const Owned session(scene, settings, camera);
+    {
+      const Allocations allocations(allowed);
+      status = lancer_session_render_ranges(session.handle, 1, &range);
+    }
+    ASSERT_TRUE(status == LANCER_OK || status == LANCER_ERROR_MEMORY) << lancer_last_error();
+    ASSERT_EQ(finish(session.handle), LANCER_OK);
+    if (status == LANCER_OK)
+      break;
+    ASSERT_EQ(lancer_session_render(session.handle, 0, 2), LANCER_OK) << lancer_last_error();
+    ASSERT_EQ(finish(session.handle), LANCER_OK);
+    expect_equal(whole.handle, session.handle);
+  }
+  EXPECT_GT(allowed, 2u);
+  lancer_scene_destroy(scene);
+}
+
 // A camera that is far away in a large scene.
 } // namespace

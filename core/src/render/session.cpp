@@ -99,6 +99,8 @@ void Session::require_parts() const {
     throw Error(Fault::State, "session: its scene has no digest, which names it in parts");
   if (pool_.running())
     throw Error(Fault::State, "session: a range is still being rendered");
+  if (failed_)
+    throw Error(Fault::State, "session: a range failed; its film can only be read");
 }
 
 const Scene &Session::scene() const {
@@ -121,8 +123,12 @@ void Session::render(uint32_t first, uint32_t count) {
   if (uint64_t(first) + count > (uint64_t(1) << 31))
     bad_argument("session: " + std::to_string(uint64_t(first) + count) + " samples > 2147483648");
   tasks_.clear();
-  for (uint32_t tile = 0; tile < film_.tile_count(); ++tile)
+  for (uint32_t tile = 0; tile < film_.tile_count(); ++tile) {
+    // A range of it may have failed to start.
+    if (film_.tile(tile).count == 0)
+      Film::clear(film_.tile(tile), 0);
     tasks_.push_back({tile, first + count});
+  }
   range_samples_ = uint64_t(count) * film_.width() * film_.height();
   in_ranges_ = false;
   start();
@@ -267,14 +273,6 @@ void Session::add(const Part &part) {
 }
 
 void Session::start() {
-  deciding_ = false;
-  samples_before_ = samples_;
-  seconds_before_ = seconds();
-  cancel_ = stop_ = false;
-  next_task_ = 0;
-  started_ = true;
-  active_ = pool_.size();
-  start_ = std::chrono::steady_clock::now();
   // Before the first sample, find the background and the splits, also after a range that ended early.
   pilot_.reset();
   background_found_.reset();
@@ -283,6 +281,14 @@ void Session::start() {
     if (finds_splits())
       pilot_ = std::make_unique<Pilot>(*scene_, camera_, background_, settings_, pool_.size());
   }
+  deciding_ = false;
+  samples_before_ = samples_;
+  seconds_before_ = seconds();
+  cancel_ = stop_ = false;
+  next_task_ = 0;
+  started_ = true;
+  active_ = pool_.size();
+  start_ = std::chrono::steady_clock::now();
   pool_.start([this](uint32_t thread) { work(thread); });
 }
 
