@@ -177,4 +177,27 @@ TEST(PartsWithoutMemory, LetASessionStartAtSampleZero) {
 }
 
 // A camera that is far away in a large scene.
+TEST(Joiner, TakesTheCamerasOfSessions) {
+  lancer_scene scene = 0;
+  lancer_scene_create(&scene);
+  add_material(scene, {lobe(LANCER_LAMBERT, 0.5f)});
+  lancer_instance ball = {};
+  place(ball.matrix, 0.0, 0.0, 0.0, 1e19);
+  ball.kind = LANCER_SPHERE;
+  ball.slot_count = 1;
+  const uint32_t slot = 0;
+  ASSERT_EQ(lancer_scene_add_instances(scene, 1, &ball, 1, &slot, nullptr, 0), LANCER_OK) << lancer_last_error();
+  lancer_scene_set_digest(scene, kDigest);
+  ASSERT_EQ(lancer_scene_commit(scene, LANCER_BVH, 1), LANCER_OK);
+  while (lancer_scene_wait(scene, 50) == LANCER_RUNNING)
+    ;
+  const lancer_settings settings = made_settings();
+  lancer_camera camera = make_camera(kMadeWidth, kMadeHeight);
+  camera.matrix[7] = -4e19;
+  camera.clip_end = 1e21;
+  const Owned session(scene, settings, camera), joiner(0, settings, camera);
+  EXPECT_EQ(import(joiner.handle, rendered(session.handle, {{0, 0, 2}})), LANCER_OK) << lancer_last_error();
+  lancer_scene_destroy(scene);
+}
+
 } // namespace

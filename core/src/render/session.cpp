@@ -17,7 +17,11 @@ constexpr uint64_t kTilesEach = 64;
 // Side of the squares whose samples are refined together. Fixed, so that refinement depends on neither tile size nor threads.
 constexpr uint32_t kRefinedSize = 16;
 
-Camera normalised(Camera camera, const Normalisation &normalisation) {
+// scene: null if no ray is sent through the camera.
+Camera normalised(Camera camera, const Scene *scene) {
+  if (!scene)
+    return camera;
+  const Normalisation &normalisation = scene->normalisation;
   camera.to_world.translation = normalisation.to_normalised(camera.to_world.translation);
   camera.scale_lengths(normalisation.scale);
   check_reach(camera);
@@ -64,9 +68,8 @@ uint32_t tile_size(const Camera &camera, const IntegratorSettings &settings, uin
 
 Session::Session(std::shared_ptr<const Scene> scene, const Camera &camera, const IntegratorSettings &settings,
                  const Identity &identity)
-    : scene_(std::move(scene)),
-      camera_(normalised(checked_memory(camera, settings), scene_ ? scene_->normalisation : Normalisation())),
-      identity_(identity), settings_(settings),
+    : scene_(std::move(scene)), camera_(normalised(checked_memory(camera, settings), scene_.get())), identity_(identity),
+      settings_(settings),
       film_(camera.region_width, camera.region_height, tile_size(camera, settings, ThreadPool::resolved(settings.threads)),
             settings.passes, settings.refines),
       pool_(scene_ ? settings.threads : 1) {
