@@ -47,6 +47,47 @@ struct Picture {
 };
 
 // The film has samples before, among, and after those of the part, so that sums are joined with the ones around them.
+TEST(PartsWithoutMemory, LeaveTheFilmAsItIs) {
+  Picture other;
+  other.add(0, 0, 3);
+  other.add(1, 4, 2);
+  const Bytes more = other.part();
+  Picture gaps;
+  gaps.add(0, 8, 5);
+  const Bytes again = gaps.part();
+  bool failed = true;
+  uint64_t allowed = 0;
+  for (; failed; ++allowed) {
+    SCOPED_TRACE("allocations: " + std::to_string(allowed));
+    Picture picture;
+    picture.add(0, 3, 2);
+    picture.add(1, 2, 2);
+    const Part first(more), second(again);
+    const Bytes before = picture.part();
+    failed = false;
+    try {
+      const Allocations allocations(allowed);
+      first.add_to(picture.film, {});
+    } catch (const std::bad_alloc &) {
+      failed = true;
+    }
+    if (failed) {
+      EXPECT_EQ(before, picture.part());
+      first.add_to(picture.film, {});
+    }
+    second.add_to(picture.film, {});
+    Picture whole;
+    whole.add(0, 0, 3);
+    whole.add(0, 3, 2);
+    Part(again).add_to(whole.film, {});
+    whole.add(1, 2, 2);
+    whole.add(1, 4, 2);
+    EXPECT_EQ(picture.part(), whole.part());
+  }
+  // At least the tiles, their sums and their pixels were refused once.
+  EXPECT_GT(allowed, 8u);
+}
+
 TEST(PartsOfTheLargestLight, Fit) {
   Picture bright;
   bright.add(0, 0, 2, std::numeric_limits<float>::max());
