@@ -1,10 +1,10 @@
 #include "program.h"
 
 #include "checked.h"
+#include "looks.h"
+#include "parts.h"
 #include "probes.h"
-#include "records.h"
 
-#include <algorithm>
 #include <cstring>
 #include <string>
 
@@ -12,24 +12,17 @@ namespace lancer_fuzz {
 
 namespace {
 
+// The bytes that select a call for parts. They hardly occur where files from before there were parts select a call, so that
+// these keep their meaning: others select by their remainder.
+constexpr uint8_t kFirstOfParts = 240, kLastOfParts = 245;
+
 constexpr uint32_t kMostCalls = 40, kMostScenes = 2, kMostSessions = 3, kMostRanges = 5, kMostRefinements = 4, kMostThings = 16;
-
-struct SceneState {
-  lancer_scene handle = 0;
-  Filled filled;
-  bool committed = false; // or in progress
-};
-
-struct SessionState {
-  lancer_session handle = 0;
-  uint32_t width = 0, height = 0, samples = 0;
-};
 
 // Every byte is read in a statement of its own or in an order that the language defines, so that a file means the same calls
 // with every compiler.
 class Program {
 public:
-  Program(const uint8_t *data, size_t size) : bytes_(data, size), records_(bytes_) {}
+  Program(const uint8_t *data, size_t size) : bytes_(data, size), records_(bytes_), parts_(bytes_, records_, sessions_) {}
 
   void run() {
     for (uint32_t i = 0; i < kMostCalls && bytes_.any(); ++i)
@@ -45,13 +38,12 @@ private:
       return b == 255 ? 0 : b == 254 ? 0xdeadbeef12345678u : gone_;
     return states[(states.size() - 1 + b / 200) % states.size()].handle;
   }
-  template <class State> State *state_of(std::vector<State> &states, uint64_t handle) {
-    const auto found = std::find_if(states.begin(), states.end(), [&](const State &s) { return s.handle == handle; });
-    return found == states.end() ? nullptr : &*found;
-  }
 
   void call() {
-    switch (bytes_.below(24)) {
+    const uint8_t b = bytes_.byte();
+    if (b >= kFirstOfParts && b <= kLastOfParts)
+      return b == kFirstOfParts ? create_session_of_parts() : parts_.call();
+    switch (b % 24) {
     case 0:
       return create_scene();
     case 1:
@@ -97,18 +89,6 @@ private:
     }
   }
 
-  void ask_error(lancer_session session, double confidence, bool nowhere) {
-    lancer_error e;
-    if (LANCER_CHECKED(lancer_session_error(session, confidence, nowhere ? nullptr : &e)) != LANCER_OK)
-      return;
-    // The first four are infinite while they are unknown; missing is infinite if the last bounce has no less light than the one
-    // before.
-    const bool good = e.low >= 0.0 && e.low <= e.error && e.error <= e.high && e.cannot_exclude >= 0.0 && e.clipped >= 0.0 &&
-                      e.clipped <= 1.0 && e.missing >= 0.0 && e.planned_samples >= 0.0 && e.least_samples <= e.most_samples;
-    if (!good)
-      broken("lancer_session_error", "its numbers are invalid");
-  }
-
   // Ends a range, requests its error, or refines by it.
   void judge(lancer_session session) {
     switch (bytes_.below(6)) {
@@ -132,7 +112,10 @@ private:
       return;
     ++refinements_;
     const double target = bytes_.number(0.05, 0.0, 1.0), confidence = bytes_.number(0.95, 0.0, 1.0);
-    LANCER_CHECKED(lancer_session_refine(session, target, confidence));
+    // Parts may bring more samples than there is time to double.
+    const SessionState *state = state_of(sessions_, session);
+    if (!state || !state->joined)
+      LANCER_CHECKED(lancer_session_refine(session, target, confidence));
   }
 
   void create_scene() {
@@ -230,18 +213,19 @@ private:
   }
 
   void create_session(lancer_scene scene) {
-    if (sessions_.size() == kMostSessions)
+    if (sessions_.size() >= kMostSessions)
       return;
     const lancer_camera camera = records_.camera();
     const lancer_settings settings = records_.settings();
-    SessionState session{0, camera.region_width, camera.region_height};
+    SessionState session{0, camera, settings};
     if (LANCER_CHECKED(lancer_session_create(scene, &camera, &settings, &session.handle)) == LANCER_OK)
       sessions_.push_back(session);
   }
   void render(lancer_session session) {
     SessionState *state = state_of(sessions_, session);
     const uint32_t first = bytes_.rarely(10) ? bytes_.word() : state ? state->samples : 0, count = 1 + bytes_.below(2);
-    if (ranges_ == kMostRanges || LANCER_CHECKED(lancer_session_render(session, first, count)) != LANCER_OK)
+    if (ranges_ == kMostRanges || (state && state->slow) ||
+        LANCER_CHECKED(lancer_session_render(session, first, count)) != LANCER_OK)
       return;
     ++ranges_;
     state->samples += count;
@@ -260,48 +244,18 @@ private:
     std::erase_if(sessions_, [&](const SessionState &state) { return state.handle == session; });
   }
 
-  // Reads all passes of the film and the statistics, and replays a sample.
-  void look(lancer_session session) {
-    std::vector<float> picture;
-    lancer_statistics statistics;
-    LANCER_CHECKED(lancer_session_statistics(session, &statistics));
-    ask_error(session, 0.95, false);
-    const SessionState *state = state_of(sessions_, session);
-    const size_t pixels = state ? size_t(state->width) * state->height : 1;
-    for (uint32_t pass = 0; pass <= LANCER_PASS_COUNT; ++pass)
-      for (const size_t channels : {1, 3, 4}) {
-        picture.assign(pixels * channels, NAN);
-        if (LANCER_CHECKED(lancer_session_read(session, pass, picture.data(), picture.size())) != LANCER_OK)
-          continue;
-        for (const float value : picture)
-          // An error is infinite while it is unknown.
-          if (std::isnan(value) || (std::isinf(value) && pass != LANCER_PASS_ERROR))
-            broken("lancer_session_read", ("pass " + std::to_string(pass) + " is not finite").c_str());
-      }
-    replay(session, state);
-    probe_camera(session, bytes_);
-  }
-
-  void replay(lancer_session session, const SessionState *state) {
-    float rgba[4];
-    lancer_vertex vertices[4];
-    uint32_t count = 0;
-    const uint32_t x = state ? bytes_.reference(state->width) : 0, y = state ? bytes_.reference(state->height) : 0;
-    const uint32_t sample = bytes_.below(3), capacity = bytes_.below(5);
-    LANCER_CHECKED(lancer_debug_sample(session, x, y, sample, rgba, vertices, capacity, &count));
-  }
-
+  void look(lancer_session session) { lancer_fuzz::look(session, state_of(sessions_, session), bytes_); }
   void probe(lancer_scene scene) {
     const SceneState *state = state_of(scenes_, scene);
     probe_scene(scene, state ? &state->filled : nullptr, bytes_);
   }
 
-  // Continues to the end: a scene, a commit, a session, a range, its picture.
-  void finish() {
+  // Fills and commits the newest scene unless that is done. Returns whether it can be rendered.
+  bool make_ready() {
     if (scenes_.empty())
       create_scene();
     if (scenes_.empty())
-      return;
+      return false;
     // An empty scene tests nothing.
     if (!scenes_.back().committed && scenes_.back().filled.instances == 0) {
       add_material();
@@ -314,17 +268,25 @@ private:
     lancer_status status;
     while ((status = LANCER_CHECKED(lancer_scene_wait(scene.handle, 50))) == LANCER_RUNNING)
       ;
-    if (status == LANCER_OK) {
-      create_session(scene.handle);
+    return status == LANCER_OK;
+  }
+
+  void create_session_of_parts() {
+    make_ready();
+    parts_.create_session(bytes_.rarely(10) || scenes_.empty() ? handle_of(scenes_) : scenes_.back().handle);
+  }
+
+  // Continues to the end: a scene, a commit, a session, a range, its picture.
+  void finish() {
+    if (make_ready()) {
+      create_session(scenes_.back().handle);
       for (const SessionState &session : std::vector<SessionState>(sessions_)) {
-        while (LANCER_CHECKED(lancer_session_wait(session.handle, 50, nullptr)) == LANCER_RUNNING)
-          ;
+        wait_for_end(session.handle);
         render(session.handle);
-        while (LANCER_CHECKED(lancer_session_wait(session.handle, 50, nullptr)) == LANCER_RUNNING)
-          ;
+        wait_for_end(session.handle);
         look(session.handle);
       }
-      probe(scene.handle);
+      probe(scenes_.back().handle);
     }
     for (const SessionState &session : sessions_)
       LANCER_CHECKED(lancer_session_destroy(session.handle));
@@ -336,6 +298,7 @@ private:
   Records records_;
   std::vector<SceneState> scenes_;
   std::vector<SessionState> sessions_;
+  Parts parts_;
   uint64_t gone_ = 7;
   uint32_t refinements_ = 0;
   uint32_t ranges_ = 0;
