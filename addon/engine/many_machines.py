@@ -6,7 +6,7 @@ from typing import NamedTuple
 from ..farm.pipe_pool import PipePool
 from ..farm.pool import PoolError
 from ..farm.remote_session import RemoteSession
-from ..farm.still import LONGEST
+from ..farm.still import set_rounds
 
 
 class Machines(NamedTuple):
@@ -39,7 +39,7 @@ def opened(machines, snapshot, poll, tell):
 def prepare(schedule):
     """Set the length of rounds, which cost a way to the workers and back."""
     if pool_of(schedule) is not None:
-        schedule.longest = LONGEST
+        set_rounds(schedule)
 
 
 def pool_of(schedule):

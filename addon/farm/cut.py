@@ -54,22 +54,26 @@ class Round:
         """The pixel samples that have not been handed out."""
         return self.samples - (int(self._ends[self._next - 1]) if self._next else 0)
 
-    def take(self, workers, least=1, most=math.inf):
+    def take(self, workers, least=1, most=math.inf, threads=1):
         """Return the next Task, or None if nothing is left.
 
         workers: their number; least: pixel samples below which a task is not worth its way; most: those above which the
-        picture would wait for it too long.
+        picture would wait for it too long; threads: those of a worker, each of which renders one tile at a time.
         """
         if self._next == len(self.ranges):
             return None
         done = self.samples - self.left
         share = min(max(least, self.left / (_TASKS_EACH * max(1, workers))), most)
-        end = max(self._next + 1, int(np.searchsorted(self._ends, done + share, side="right")))
+        end = int(np.searchsorted(self._ends, done + share, side="right"))
+        # A task gives each thread a tile; where that is too much work, it is cut along the samples.
+        is_small = end < self._next + threads
+        end = min(self._next + threads, len(self.ranges)) if is_small else end
         ranges = self.ranges[self._next : end]
         samples = int(self._ends[end - 1]) - done
-        # A picture of few tiles is cut along its samples, too.
-        pieces = min(math.ceil(samples / share), int(ranges["count"].max()), _MOST_PIECES) if len(ranges) == 1 else 1
-        task = Task(self.number, ranges, max(1, pieces), samples)
+        # By a power of two, pieces are whole subtrees of the film's sums, so that their parts are small.
+        pieces = 1 << (math.ceil(samples / share) - 1).bit_length() if is_small else 1
+        pieces = min(pieces, int(ranges["count"].max()), _MOST_PIECES)
+        task = Task(self.number, ranges, pieces, samples)
         self.number += 1
         self._next = end
         return task

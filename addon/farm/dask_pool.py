@@ -28,6 +28,8 @@ _MOST_FAILURES = 4
 _STEP = 0.05
 # Parts that one join takes.
 _FAN = 4
+# Parts that are fetched at once: the memory of this process holds them.
+_MOST_FETCHED = 32
 
 
 class _Attempt:
@@ -100,13 +102,10 @@ class DaskPool:
         while not found and (left := until - time.monotonic()) > 0.0:
             self._is_lost(None)
             self._help_slow()
-            try:
-                attempt = self._arrived.get(timeout=min(left, 0.2))
-                while True:
-                    found += self._end_of(attempt)
-                    attempt = self._arrived.get_nowait()
-            except queue.Empty:
-                pass
+            attempts = self._arrivals(min(left, 0.2))
+            results = self._results(attempts)
+            for attempt in attempts:
+                found += self._end_of(attempt, results)
         return found
 
     def refuse(self, by, why):
@@ -217,7 +216,31 @@ class DaskPool:
         layer[0].add_done_callback(lambda _: self._arrived.put(attempt))
         return attempt
 
-    def _end_of(self, attempt):
+    def _arrivals(self, seconds):
+        """Return attempts that have ended; wait at most that long for the first one."""
+        found = []
+        try:
+            found.append(self._arrived.get(timeout=seconds))
+            while len(found) < _MOST_FETCHED:
+                found.append(self._arrived.get_nowait())
+        except queue.Empty:
+            pass
+        return found
+
+    def _results(self, attempts):
+        """Return results by key, of many workers at once; those that are missing have to be asked for."""
+        futures = [one.futures[-1] for one in attempts if one in self._attempts.get(one.task.number, ())]
+        futures = [future for future in futures if future.status == "finished"]
+        if len(futures) < 2:
+            return {}
+        try:
+            results = self._client.gather(futures)
+        except Exception:
+            # One of them fails: each is asked for its own failure.
+            return {}
+        return {future.key: made for future, made in zip(futures, results, strict=True)}
+
+    def _end_of(self, attempt, results):
         """Return the Dones of an attempt that has ended: none if its task has ended before, or if it begins again."""
         task = attempt.task
         others = self._attempts.get(task.number, [])
@@ -225,7 +248,7 @@ class DaskPool:
             return []
         future = attempt.futures[-1]
         try:
-            made = future.result()
+            made = results[future.key] if future.key in results else future.result()
         except Exception as error:
             made = None
             if future.status in ("cancelled", "lost") or isinstance(error, (OSError, TimeoutError)):

@@ -1,5 +1,6 @@
 """The process between Blender and a scheduler: it reads commands from standard input and writes results to standard output."""
 
+import contextlib
 import os
 import queue
 import sys
@@ -37,8 +38,6 @@ def relay(address):
 
 def _cluster_of(address):
     """Return a context of what DaskPool connects to."""
-    import contextlib
-
     return local_cluster() if address == "local" else contextlib.nullcontext(address)
 
 
@@ -60,11 +59,12 @@ def _serve(pool, commands, out):
             told = time.monotonic()
             state = {"workers": pool.workers, "trouble": pool.trouble, "dashboard": pool.dashboard}
             pipe.write(out, {"is": "state", **state})
-        for done in pool.ended(_STEP) if pool.waiting else ():
-            _write_done(out, done)
+        # Obey all commands that are there before the next part is waited for.
         try:
-            item = commands.get(timeout=0.0 if pool.waiting else _STEP)
+            item = commands.get_nowait() if pool.waiting else commands.get(timeout=_STEP)
         except queue.Empty:
+            for done in pool.ended(_STEP) if pool.waiting else ():
+                _write_done(out, done)
             continue
         if item is None:
             return

@@ -25,7 +25,11 @@ _MOST_FAILURES = 4
 
 
 class RemoteSession:
-    """snapshot: a SceneSnapshot, whose meshes and images may be freed afterwards; pool: as pool.LocalPool."""
+    """snapshot: a SceneSnapshot, whose meshes and images may be freed afterwards; pool: as pool.LocalPool.
+
+    overlaps: whether a range of render() ends when all of it is handed out, if settings.samples asks for more: the workers
+    begin the next one before the last parts of this one come. Set it where nothing is decided by the samples in between.
+    """
 
     def __init__(self, snapshot, pool, poll=None, library=None):
         self.pool = pool
@@ -46,9 +50,11 @@ class RemoteSession:
         self._failures = Counter()
         self._number = 0
         self._before = 0  # pixel samples before the round
+        self._threads = max(1, decision.figures["threads"])  # of a worker
         self._seconds, self._started = 0.0, None
         self._rate = 0.0  # pixel samples per second of a worker
-        self._ended = self._cancelled = False
+        self._ended = self._cancelled = self._runs_on = False
+        self.overlaps = False
         self.instruction_sets = {decision.figures["instruction_set"]}
         self.makers = Counter()  # pixel samples by worker
         self.refused = []  # sentences about parts that were wrong
@@ -56,6 +62,7 @@ class RemoteSession:
 
     def render(self, first, count):
         self._start(whole_range(first, count, len(self._pixels)))
+        self._runs_on = self.overlaps and first + count < self.settings.samples
 
     def refine(self, target=0.0, confidence=0.95):
         ranges = self._film.plan(target, confidence)
@@ -70,14 +77,14 @@ class RemoteSession:
         for done in self.pool.ended(seconds) if self._waiting else ():
             self._take(done)
         self._hand_out()
-        finished = self._ended or not self._waiting and self._round.left == 0
+        finished = self._ended or self._round.left == 0 and (self._runs_on or not self._waiting)
         if finished and self._started is not None:
             self._seconds += time.monotonic() - self._started
             self._started = None
         statistics = self._film.statistics()
         share = (statistics.samples - self._before) / max(1, self._round.samples)
         return Progress(
-            min(1.0, share), self.seconds, statistics.samples, statistics.rays, finished, finished and self._cancelled
+            min(1.0, max(0.0, share)), self.seconds, statistics.samples, statistics.rays, finished, finished and self._cancelled
         )
 
     def stop(self):
@@ -107,8 +114,11 @@ class RemoteSession:
     def statistics(self):
         joined = self._film.statistics()
         values = {name: getattr(joined, name) for name in Statistics.__dataclass_fields__}
-        sets = ", ".join(sorted(self.instruction_sets))
-        return Statistics(**values | self._decision.figures | {"render_seconds": self.seconds, "instruction_set": sets})
+        values |= self._decision.figures
+        values["render_seconds"] = self.seconds
+        values["threads"] = self._threads * max(1, len(self.makers))
+        values["instruction_set"] = ", ".join(sorted(self.instruction_sets))
+        return Statistics(**values)
 
     def messages(self):
         return list(self._decision.messages)
@@ -125,8 +135,8 @@ class RemoteSession:
 
     def _start(self, ranges):
         self._round = Round(ranges, self._pixels, self._number)
-        self._before = self._film.statistics().samples
-        self._ended = False
+        self._before = self._film.statistics().samples + sum(task.samples for task in self._waiting.values())
+        self._ended = self._runs_on = False
         self._started = time.monotonic()
         self._hand_out()
 
@@ -134,7 +144,8 @@ class RemoteSession:
         """Give the pool as many tasks as its workers can have in work and in reserve."""
         workers = self.pool.workers
         while not self._ended and self.pool.waiting < _AHEAD * max(1, workers):
-            task = self._round.take(workers, max(1, self._rate * _LEAST_SECONDS), self._rate * _MOST_SECONDS or math.inf)
+            least, most = max(1, self._rate * _LEAST_SECONDS), self._rate * _MOST_SECONDS or math.inf
+            task = self._round.take(workers, least, most, self._threads)
             if task is None:
                 break
             self._number = self._round.number

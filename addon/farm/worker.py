@@ -73,7 +73,7 @@ def decide(name, data, threads=0):
 
 _FIGURES = (
     "build_seconds", "triangles", "instances", "lights", "geometry_bytes", "accelerator_bytes", "texture_bytes",
-    "features", "kernel", "instruction_set",
+    "features", "kernel", "instruction_set", "threads",
 )  # fmt: skip
 
 

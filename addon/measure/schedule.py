@@ -39,6 +39,7 @@ class Schedule:
         self.settings = session.settings
         self.reason = None  # why the render ended
         self.longest = _LONGEST_RANGE
+        self.first = 1  # samples of the first range: a power of two, at most FIRST_LOOK
         self.samples = 0  # of every pixel, at least
         self.error = None  # the last PictureError that was read
         self.confidence = 1.0 - _MISTAKE
@@ -186,7 +187,7 @@ class Schedule:
 
     def _count(self):
         """Return the samples of the next range for all pixels."""
-        count = max(1, self.samples)
+        count = max(self.first, self.samples)
         if not self.settings.refines and self._seconds_per_sample > 0.0:
             # Multiples of an eighth of the largest power of two keep the film small.
             unit = max(1, (1 << self.samples.bit_length()) // 16)

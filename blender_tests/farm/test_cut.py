@@ -110,12 +110,28 @@ def test_few_tiles_are_cut_along_their_samples(tiles, workers):
     left, pieces = whole.left, 0
     for task in drained(whole, workers):
         share = left / (3 * workers)
-        assert len(task.ranges) == 1 and task.pieces == min(64, math.ceil(1024 * 128 / share))
+        assert len(task.ranges) == 1 and task.pieces & (task.pieces - 1) == 0
+        assert task.pieces == 64 or 1 <= task.pieces / (1024 * 128 / share) < 2
         counts = [int(task.piece(index)["count"][0]) for index in range(task.pieces)]
         assert max(counts) - min(counts) <= 1
         pieces += task.pieces
         left -= task.samples
     assert pieces >= min(3 * workers, 64)
+
+
+@pytest.mark.parametrize("threads", [1, 4, 16])
+def test_every_thread_of_a_worker_has_a_tile(threads):
+    """Tasks have no fewer tiles than a worker has threads, but for the last one; pieces are as large as tasks would be."""
+    whole = Round(whole_range(64, 64, 200), np.full(200, 128, np.uint32))
+    tasks, left = [], whole.left
+    while (task := whole.take(50, 1000, threads=threads)) is not None:
+        share = max(1000, left / 150)
+        assert len(task.ranges) >= threads or len(task.ranges) == len(whole.ranges) - sum(len(one.ranges) for one in tasks)
+        assert task.pieces in (64, 1) or task.samples / task.pieces <= share < 2 * task.samples / task.pieces
+        tasks.append(task)
+        left -= task.samples
+    assert len(tasks) > 10 and (threads == 1 or tasks[0].pieces > 1)
+    assert samples_of(np.concatenate([one.ranges for one in tasks])) == samples_of(whole.ranges)
 
 
 def test_pieces_have_at_least_a_sample():

@@ -19,7 +19,7 @@ from addon.bindings.snapshot import World
 from addon.farm import worker
 from addon.farm.pool import LocalPool, PoolError
 from addon.farm.remote_session import RemoteSession
-from addon.farm.still import LONGEST, render_still
+from addon.farm.still import render_still, set_rounds
 from addon.measure.schedule import CANCELLED, SAMPLES, TARGET, TIME, Schedule
 
 PASSES = (Pass.COMBINED, Pass.DEPTH, Pass.OBJECT_INDEX, Pass.DIFFUSE_DIRECT, Pass.HALVES, Pass.ERROR)
@@ -281,7 +281,7 @@ def ended_early(pool, snapshot, end):
     """Render until a round after the first 16 samples has some parts, call end(schedule), and return the schedule."""
     session = RemoteSession(snapshot, pool)
     schedule = Schedule(session)
-    schedule.longest = LONGEST
+    set_rounds(schedule)
     while schedule.start():
         pool.deliver = one_by_one
         while not (progress := schedule.wait(0.0)).finished:
@@ -321,6 +321,35 @@ def test_an_ended_picture_keeps_what_has_come(end, reason):
         finish(one)
         assert different(told(one), facts) == ["planned_samples"]
     session.close()
+
+
+@pytest.mark.parametrize("name, overlaps", [("samples", True), ("target", False)])
+def test_workers_wait_for_the_end_of_a_round_only_where_it_decides_the_next(name, overlaps):
+    pool, begun = GivenPool(4), []
+
+    def keep_the_first(waiting):
+        found = [done for done in waiting if done.task.number != 0] or list(waiting)
+        if any(done.task.number == 0 for done in found):
+            begun.append(any(task.ranges["first"].max() > 0 for task in pool.tasks.values()))
+        for done in found:
+            waiting.remove(done)
+        return found
+
+    pool.deliver = keep_the_first
+    rendered_by(pool, name)
+    assert begun == [overlaps]
+
+
+@pytest.mark.parametrize(
+    "workers, samples, first", [(1, 64, 1), (2, 64, 2), (7, 64, 4), (60, 64, 8), (60, 4096, 32), (60, 3, 1)]
+)
+def test_the_first_round_has_a_sample_for_each_worker(workers, samples, first):
+    for limits in ({}, {"time_limit": 100.0}):
+        with RemoteSession(picture(samples, **limits), GivenPool(workers)) as session:
+            schedule = Schedule(session)
+            set_rounds(schedule)
+            assert schedule.first == (min(first, 16) if limits else first)
+            assert session.overlaps == (not limits)
 
 
 def test_without_a_round_there_is_nothing_to_wait_for():
