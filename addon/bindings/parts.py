@@ -68,6 +68,7 @@ class PartInfo:
     """The picture that a part belongs to, and the samples that it holds: lancer_part of lancer.h."""
 
     digest: bytes
+    release: str  # of the library that has rendered the samples
     hash: int
     samples: int  # pixel samples
     camera: Camera
@@ -85,7 +86,7 @@ def describe_part(part, library=None):
     check(library.lancer_part_describe(part.ctypes.data, part.size, ctypes.byref(raw)), library)
     splits = {"split_lights": raw.split_lights, "split_paths": raw.split_paths}
     return PartInfo(
-        bytes(raw.digest), raw.hash, raw.samples, _camera(raw.camera), _settings(raw.settings, splits),
+        bytes(raw.digest), raw.release.decode("ascii", "replace"), raw.hash, raw.samples, _camera(raw.camera), _settings(raw.settings, splits),
         raw.tiles, raw.first, raw.end,
     )  # fmt: skip
 

@@ -350,6 +350,7 @@ class Part(Structure):
 
     _fields_ = [
         ("digest", c_uint8 * 32),
+        ("release", c_char * 16),
         ("hash", c_uint64),
         ("samples", c_uint64),
         ("camera", Camera),

@@ -12,7 +12,7 @@ import uuid
 from distributed import Client, Variable
 
 from . import dask_tasks
-from .pool import Done, PoolError
+from .pool import Done, NoAddress, PoolError
 
 # Seconds to wait for a scheduler or a first worker.
 _PATIENCE = 600.0
@@ -143,6 +143,8 @@ class DaskPool:
                 if time.monotonic() > until or poll is not None and poll():
                     raise PoolError(f"there is no scheduler at {self.address}: {error}") from error
                 time.sleep(_PAUSE)
+            except ValueError as error:
+                raise NoAddress(f"{self.address} is no address of a scheduler: {error}") from error
         while not self._client.nthreads():
             self.trouble = "waiting for workers"
             if time.monotonic() > until or poll is not None and poll():

@@ -24,6 +24,10 @@ class PoolError(LancerError):
     """The machines cannot go on; the text says what to do."""
 
 
+class NoAddress(PoolError):
+    """The text that names a scheduler is no address."""
+
+
 class LocalPool:
     """One worker, in a thread of this process.
 

@@ -11,7 +11,7 @@ import sys
 from . import picture_file
 from .arguments import count, loaded, percent, seconds, threads
 from .exit_codes import DONE, WrongUse
-from .pool import PoolError
+from .pool import NoAddress, PoolError
 from .progress_bar import ProgressBar
 from .render_snapshot import adjusted, render, report
 
@@ -91,8 +91,8 @@ def _pool(arguments, bar, poll):
     with local_cluster(arguments.workers) if local else contextlib.nullcontext(arguments.scheduler) as place:
         try:
             pool = DaskPool(place, poll)
-        except ValueError as error:
-            raise WrongUse(f"{place} is no address of a scheduler: {error}") from error
+        except NoAddress as error:
+            raise WrongUse(str(error)) from error
         try:
             bar(0.0, f"the dashboard is at {pool.dashboard}")
             yield pool

@@ -150,7 +150,9 @@ def test_the_hash_is_of_all_that_decides_bits():
     fixed = about["settings"].copy()
     for name in FREE:
         fixed[name] = 0
-    assert about["hash"] == xxh64(about["digest"].tobytes() + about["camera"].tobytes() + fixed.tobytes())
+    hashed = b"".join(one.tobytes() for one in (about["digest"], about["release"], about["camera"], fixed))
+    assert about["hash"] == xxh64(hashed)
+    assert about["release"].tobytes().rstrip(b"\0").decode() == abi.load_library().lancer_version().decode()
     for name in FREE[:-1]:
         assert read(**{name: 1 + getattr(snapshot.settings, name) % 2})["hash"] == about["hash"], name
     fixing = {name: OTHER_VALUES[kind] for name, (kind, _) in SETTINGS.items() if name not in (*FREE, "passes")}

@@ -39,6 +39,7 @@ def test_a_target_error_ends_it_as_on_this_machine(case, cluster):
 def test_errors_say_what_to_do(case, tmp_path):
     assert "Many Machines > Scheduler" in case("failure", "", sys.executable)
     assert "preferences" in case("failure", "tcp://127.0.0.1:1", str(tmp_path / "no_python"))
+    assert "nonsense is no address of a scheduler" in case("failure", "nonsense", sys.executable)
     venv.create(tmp_path / "bare", symlinks=True)
     bare = str(tmp_path / "bare" / "bin" / "python")
     assert subprocess.run([bare, "-c", "import distributed"], capture_output=True).returncode == 1

@@ -98,6 +98,7 @@ void seal(std::vector<uint8_t> &part, Bytes &bytes) {
     std::memcpy(&description, part.data() + kDescription, sizeof description);
     lancer::Identity identity{{}, true, description.camera, description.settings};
     std::copy_n(description.digest, identity.digest.size(), identity.digest.begin());
+    std::copy_n(description.release, identity.release.size(), identity.release.begin());
     put_long(kDescription + offsetof(lancer_part, hash), identity.hash());
   }
   if (!bytes.rarely(10))

@@ -949,6 +949,10 @@ LANCER_API lancer_status lancer_combine_denoised(uint32_t width, uint32_t height
  * tile_size. The numbers of lights and paths of a sample are found once, by lancer_session_decide, and given to all sessions
  * in settings.split_lights and split_paths.
  *
+ * A tile is half of a square of 16 x 16 pixels. Squares lie side by side in rows, from the lower left corner of the region;
+ * those at its right and upper edge are cut off. Square i has the tiles 2 i, its pixels (x, y) with even x + y, and 2 i + 1,
+ * those with odd x + y, with x and y counted from the corner of the region. Pixels of a tile are in the order of rows.
+ *
  * A part is a string of bytes without padding. Numbers are little-endian; f32 and f64 are those of IEEE 754; pixels are in the
  * order of their tile.
  *   char[8] "LANCERPT", u32 format (1), u32 LANCER_ABI_VERSION, u64 size of the part in bytes
@@ -960,7 +964,8 @@ LANCER_API lancer_status lancer_combine_denoised(uint32_t width, uint32_t height
  *     u32 tile, u32 n, u32 d, u32 m (1 if the tile has sample 0, else 0)
  *     n times u32 start, u32 level: sums of the samples start ... start + 2^level - 1, by rising start, a multiple of 2^level
  *     n times f64[pixels][channels] sums of the summed passes in order of pass, as film_passes.cpp lists them; f32[pixels]
- *       difference of the mean luminances of both halves (0 if level is 0); f32[pixels][halves] the same of each pass of halves
+ *       difference of the mean luminances of both halves (0 if level is 0); f32[pixels][halves] the same of each colour
+ *       that passes of halves tell, three numbers for each such pass, in order of pass
  *     f32[pixels] largest absolute luminance of a sample
  *     m times f32[pixels][channels] values of sample 0
  *     d times u64 number of dropped samples, by the bit width of the sample's number
@@ -975,7 +980,8 @@ typedef struct lancer_range {
 /* The picture that a part belongs to, and the samples that it holds. */
 typedef struct lancer_part {
   uint8_t digest[32]; /* of the scene */
-  uint64_t hash;      /* of digest, camera and the settings that must be equal: XXH64 */
+  char release[16];   /* lancer_version() of the library that has rendered the samples: another one may have other bits */
+  uint64_t hash;      /* of digest, release, camera and the settings that must be equal: XXH64 */
   uint64_t samples;   /* pixel samples */
   lancer_camera camera;
   lancer_settings settings;           /* features, threads and tile_size are 0 */

@@ -46,7 +46,7 @@ lancer_status lancer_session_create_joiner(const uint8_t digest[32], const lance
     require(camera, "camera");
     require(settings, "settings");
     require(session, "session");
-    Identity identity{{}, true, *camera, *settings};
+    Identity identity{{}, true, *camera, *settings, this_release()};
     std::copy_n(digest, identity.digest.size(), identity.digest.begin());
     *session = sessions().add(std::make_shared<SessionObject>(nullptr, identity));
     return LANCER_OK;

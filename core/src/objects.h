@@ -7,6 +7,7 @@
 #include "scene/messages.h"
 #include "simd/processor.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -40,6 +41,16 @@ inline lancer_status status_of(Fault fault) {
   }
   return LANCER_ERROR_INTERNAL;
 }
+
+// Returns the release as parts of pictures tell it.
+inline std::array<char, sizeof lancer_part::release> this_release() {
+  static_assert(sizeof LANCER_VERSION <= sizeof lancer_part::release);
+  std::array<char, sizeof lancer_part::release> release{};
+  std::copy_n(LANCER_VERSION, sizeof LANCER_VERSION, release.begin());
+  return release;
+}
+
+inline void copy_text(char *target, size_t size, const std::string &text) { std::snprintf(target, size, "%s", text.c_str()); }
 
 struct BadHandle {
   const char *text;

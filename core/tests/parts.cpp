@@ -324,6 +324,7 @@ TEST(PartOf, IsDescribed) {
   lancer_part described;
   ASSERT_EQ(lancer_part_describe(part.data(), part.size(), &described), LANCER_OK) << lancer_last_error();
   EXPECT_EQ(std::memcmp(described.digest, kDigest, sizeof kDigest), 0);
+  EXPECT_STREQ(described.release, lancer_version());
   EXPECT_EQ(described.camera.region_width, kWidth);
   EXPECT_EQ(described.settings.max_bounces, settings.max_bounces);
   EXPECT_EQ(described.split_lights, 2u);

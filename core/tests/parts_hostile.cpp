@@ -105,6 +105,9 @@ TEST(PartsWithHostileDescriptions, AreRefused) {
     expect_refused([=](Made &made) { made.description.split_lights = splits; }, std::to_string(splits) + " lights");
     expect_refused([=](Made &made) { made.description.split_paths = splits; }, std::to_string(splits) + " paths");
   }
+  expect_refused([](Made &made) { made.description.release[0] = '9'; }, "it is of Lancer 9");
+  expect_refused([](Made &made) { std::memset(made.description.release, 0xff, sizeof made.description.release); },
+                 "it is of Lancer ????????????????, the session of " + std::string(lancer_version()));
   expect_refused([](Made &made) { made.description.camera.lens_radius = double(kNan); }, "another camera");
   expect_refused([](Made &made) { made.description.camera.matrix[3] = double(kInfinity); }, "another camera");
   expect_refused([](Made &made) { made.description.camera.region_width = ~0u; }, "4294967295 x 5 pixels");
@@ -221,7 +224,7 @@ TEST(PartsWithHostileDroppedSamples, AreRefused) {
 }
 
 TEST(PartsOfAllSamples, AreTheLastThatATileTakes) {
-    const MadeJoiner joiner;
+  const MadeJoiner joiner;
   ASSERT_EQ(import(joiner.handle, Made({of_nodes({{0, 30, 1.0}}), of_nodes({{0, 31, 3.0}}, 1)}).bytes()), LANCER_OK);
   ASSERT_EQ(import(joiner.handle, Made({of_nodes({{1u << 30, 30, 2.0}})}).bytes()), LANCER_OK) << lancer_last_error();
   lancer_error error;

@@ -8,6 +8,7 @@
 #include "render/parts.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <cstring>
 
 namespace lancer_test {
@@ -50,6 +51,7 @@ struct Made {
 
   explicit Made(std::vector<MadeTile> of = {MadeTile()}) : tiles(std::move(of)) {
     std::copy_n(kDigest, sizeof kDigest, description.digest);
+    std::snprintf(description.release, sizeof description.release, "%s", lancer_version());
     description.camera = make_camera(kMadeWidth, kMadeHeight);
     description.settings = made_settings();
     description.split_lights = description.settings.split_lights;
@@ -78,6 +80,7 @@ struct Made {
     };
     lancer_part told = description;
     lancer::Identity identity{{}, true, told.camera, told.settings};
+    std::copy_n(told.release, identity.release.size(), identity.release.begin());
     std::copy_n(told.digest, sizeof told.digest, identity.digest.begin());
     told.hash = identity.hash();
     for (const char letter : {'L', 'A', 'N', 'C', 'E', 'R', 'P', 'T'})

@@ -49,7 +49,7 @@ void write_energy(Writer &writer, const Energy &energy) {
 } // namespace
 
 uint64_t Identity::hash() const {
-  static_assert(sizeof(lancer_part) == 32 + 16 + sizeof(lancer_camera) + sizeof(lancer_settings) + 20, "no padding");
+  static_assert(sizeof(lancer_part) == 32 + 16 + 16 + sizeof(lancer_camera) + sizeof(lancer_settings) + 20, "no padding");
   static_assert(sizeof(lancer_settings) == sizeof(uint32_t) * 27, "no padding");
   static_assert(sizeof(lancer_camera) == 12 * sizeof(double) + 8 * sizeof(uint32_t) + 18 * sizeof(double), "no padding");
   lancer_settings fixed = settings;
@@ -59,15 +59,25 @@ uint64_t Identity::hash() const {
   LANCER_SETTINGS(LANCER_FIX)
 #undef LANCER_FIX
   fixed.samples = has_centres(settings);
-  std::byte bytes[sizeof digest + sizeof camera + sizeof fixed];
+  std::byte bytes[sizeof digest + sizeof release + sizeof camera + sizeof fixed];
   Writer writer(bytes);
   writer.write(digest.data(), sizeof digest);
+  writer.write(release.data(), sizeof release);
   writer.write(&camera, sizeof camera);
   writer.write(&fixed, sizeof fixed);
   return checksum(bytes, sizeof bytes);
 }
 
 void Identity::require_same(const Identity &other) const {
+  const auto text = [](const Identity &identity) {
+    std::string name(identity.release.begin(), std::ranges::find(identity.release, '\0'));
+    // A hostile part may have any bytes.
+    std::ranges::replace_if(
+        name, [](char c) { return c < ' ' || c > '~'; }, '?');
+    return name;
+  };
+  if (other.release != release)
+    refuse_part("it is of Lancer " + text(other) + ", the session of " + text(*this));
   if (other.digest != digest)
     refuse_part("it is of another scene");
   if (other.camera.region_width != camera.region_width || other.camera.region_height != camera.region_height)
@@ -120,6 +130,7 @@ void write_part(const Film &film, const Identity &identity, const Splits &splits
                 std::span<std::byte> out) {
   lancer_part description{};
   std::copy(identity.digest.begin(), identity.digest.end(), description.digest);
+  std::copy(identity.release.begin(), identity.release.end(), description.release);
   description.hash = identity.hash();
   description.camera = identity.camera;
   description.settings = identity.settings;

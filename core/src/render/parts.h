@@ -17,8 +17,9 @@ struct Identity {
   bool has_digest = false;
   lancer_camera camera{};
   lancer_settings settings{};
+  std::array<char, sizeof lancer_part::release> release{}; // of this library
 
-  // Returns the hash of the digest, the camera and the settings on which bits depend.
+  // Returns the hash of the digest, the release, the camera and the settings on which bits depend.
   uint64_t hash() const;
   // Throws Error with a sentence about the first difference that changes bits. other: a part's.
   void require_same(const Identity &other) const;

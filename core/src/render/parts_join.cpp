@@ -255,6 +255,7 @@ Identity Part::identity() const {
   identity.has_digest = true;
   identity.camera = description_.camera;
   identity.settings = description_.settings;
+  std::copy_n(description_.release, identity.release.size(), identity.release.begin());
   return identity;
 }
 
