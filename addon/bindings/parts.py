@@ -85,8 +85,9 @@ def describe_part(part, library=None):
     raw = abi.Part()
     check(library.lancer_part_describe(part.ctypes.data, part.size, ctypes.byref(raw)), library)
     splits = {"split_lights": raw.split_lights, "split_paths": raw.split_paths}
+    release = raw.release.decode("ascii", "replace")
     return PartInfo(
-        bytes(raw.digest), raw.release.decode("ascii", "replace"), raw.hash, raw.samples, _camera(raw.camera), _settings(raw.settings, splits),
+        bytes(raw.digest), release, raw.hash, raw.samples, _camera(raw.camera), _settings(raw.settings, splits),
         raw.tiles, raw.first, raw.end,
     )  # fmt: skip
 
