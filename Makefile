@@ -165,7 +165,7 @@ addons: packages-run python-run python-zig ## build zips, wheels and Blender's r
 	  echo "== core for $$platform"; JOBS=$(JOBS) .ci/cross.sh $$platform "$(zig)" lancer || exit 1; done
 	@LANCER_ZIG="$(zig)" $(python) .ci/package.py build/platforms $(or $(ONLY),$(platforms))
 
-test-platforms: packages-platforms python-test python-zig ## test the other platforms' libraries as far as this machine can run them: make test-platforms [ONLY=windows-x64]
+test-platforms: packages-platforms python-test python-zig build ## test the other platforms' libraries as far as this machine can run them: make test-platforms [ONLY=windows-x64]
 	@LANCER_ZIG="$(zig)" JOBS=$(JOBS) .ci/test_platforms.sh $(python) $(or $(ONLY),$(platforms))
 
 bindings: ## generate the Python side of the C interface from core/include/lancer.h

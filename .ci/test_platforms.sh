@@ -1,8 +1,8 @@
 #!/bin/sh
 # test_platforms.sh PYTHON PLATFORM...    runs the C++ tests and those of the bindings with the libraries of other platforms: of
 # Linux on the oldest supported Debian, of arm64 under qemu, of Windows under wine. Libraries that cannot be run here are
-# inspected. The zips of this machine's platform are installed, also from a repository, and Rendered shading runs in windows of
-# the next Debian's Blender.
+# inspected. A part of a picture must have the same bytes as here. The zips of this machine's platform are installed, also from a
+# repository, and Rendered shading runs in windows of the next Debian's Blender.
 set -eu
 
 case $1 in
@@ -21,6 +21,7 @@ windows_runtime=org.bytedeco:javacpp:1.5.10:jar:windows-x86_64
 # platform.
 packages="numpy scipy pytest iniconfig packaging pluggy pygments colorama trimesh mpmath"
 tests="abi/test_abi abi/test_abi_handles abi/test_abi_sessions abi/test_abi_states abi/test_library_file abi/test_snapshot
+  abi/test_parts abi/test_part_bytes
   physics/test_classic physics/test_camera physics/test_nodes physics/test_pass_values blender/test_uses"
 
 say() { echo "== $*"; }
@@ -111,6 +112,23 @@ python_tests() {
   (cd "$places/$platform/tree" && "$@" -m pytest -q -p no:cacheprovider -m "not slow" $(files) </dev/null 2>&1) |
     tee "$places/$platform/bindings.log" | tail -3
   grep -qE '^[0-9]+ passed' "$places/$platform/bindings.log"
+  same_parts "$platform" "$@"
+}
+
+# same_parts PLATFORM COMMAND...: renders some samples of a picture there and here, which must give the same bytes.
+same_parts() {
+  tree=$places/$1/tree
+  say "$1: the bytes of a part of a picture"
+  shift
+  here="env -u PYTHONHOME -u PYTHONPATH $python"
+  options="--samples 64 --part 2/2 --threads 2 --output"
+  env -u PYTHONHOME PYTHONPATH=blender_tests/helpers:. "$python" -c 'import sys, picture_parts
+picture_parts.room(64, (43, 39), max_bounces=8).save(sys.argv[1])' "$tree/scene.npz"
+  # shellcheck disable=SC2086 # words
+  $here -m addon.farm part "$tree/scene.npz" $options "$tree/here.lancer"
+  # shellcheck disable=SC2086 # words
+  (cd "$tree" && "$@" -m addon.farm part scene.npz $options there.lancer </dev/null 2>&1 | cat)
+  cmp "$tree/there.lancer" "$tree/here.lancer"
 }
 
 linux_x64() {
