@@ -1,7 +1,7 @@
 """The road over Dask: its scheduler places, moves and repeats the work; this file only asks.
 
-A lost worker's tasks go to others, which is Dask's work; so is a worker that joins. Handled here: a scheduler that was
-restarted, tasks that one slow worker keeps, workers that send rubbish.
+A lost worker's tasks go to others, which is Dask's work; so is a worker that joins. Handled here: tasks that a restarted
+scheduler has forgotten, tasks that one slow worker keeps.
 """
 
 import queue
@@ -9,18 +9,12 @@ import statistics
 import time
 import uuid
 
-from distributed import Client, Variable
-
 from . import dask_tasks
-from .pool import Done, NoAddress, PoolError
+from .dask_scheduler import Scheduler
+from .pool import Done, PoolError
 
 # Seconds to wait for a scheduler or a first worker.
 _PATIENCE = 600.0
-# Seconds between attempts to connect, and between looks at the list of workers.
-_PAUSE = 0.5
-_FRESH = 1.0
-# Wrong parts after which a worker gets no more tasks.
-_MOST_STRIKES = 2
 # A task is given to a second worker, too, if all are handed out and it takes this many times as long as the others.
 _SLOW = 3.0
 # Attempts to find a worker that can begin.
@@ -45,29 +39,20 @@ class DaskPool:
 
     def __init__(self, address, poll=None, patience=_PATIENCE):
         self.address = address
-        self.trouble = ""
-        self._patience = patience
-        self._client = None
-        self._scene = None
-        self._parcel = None  # the variable that keeps the scene's bytes with the workers
         self._attempts = {}  # lists of _Attempt by the task's number
         self._arrived = queue.Queue()
-        self._strikes = {}
         self._times = []  # seconds of tasks
-        self._addresses, self._looked = (), 0.0
-        self._prepared, self._preparing = set(), []
-        self._connect(poll)
+        self._scheduler = Scheduler(address, poll, patience)
 
     def open(self, name, data, poll=None):
-        self._scene = name, data
-        self._send(poll)
+        self._scheduler.send(name, data)
 
     def decide(self, poll=None):
         failures = []
         while len(failures) < _MOST_FAILURES:
-            workers = self._allowed() if self._strikes else None
-            future = self._client.submit(dask_tasks.decide, self._scene[0], self._parcel_of(), pure=False, workers=workers)
-            self._prepare()
+            scheduler = self._scheduler
+            future = self._client.submit(dask_tasks.decide, *scheduler.scene, pure=False, workers=scheduler.choice())
+            scheduler.prepare()
             while not future.done():
                 if poll is not None and poll():
                     return None
@@ -88,7 +73,11 @@ class DaskPool:
 
     @property
     def workers(self):
-        return len(self._allowed())
+        return len(self._scheduler.workers())
+
+    @property
+    def trouble(self):
+        return self._scheduler.trouble
 
     @property
     def waiting(self):
@@ -109,11 +98,7 @@ class DaskPool:
         return found
 
     def refuse(self, by, why):
-        for address in by:
-            self._strikes[address] = self._strikes.get(address, 0) + 1
-        self._looked = 0.0
-        if self._client.nthreads() and not self._allowed():
-            raise PoolError(f"all workers fail, the last one because {why}")
+        self._scheduler.refuse(by, why)
 
     def cancel(self):
         attempts, self._attempts = self._attempts, {}
@@ -121,81 +106,22 @@ class DaskPool:
 
     def close(self):
         self.cancel()
-        self._preparing = []
-        if self._parcel is not None and self._client.status == "running":
-            self._parcel.delete()
-        self._client.close()
+        self._scheduler.close()
 
     @property
     def dashboard(self):
         """The address of Dask's dashboard."""
         return self._client.dashboard_link
 
-    def _connect(self, poll):
-        """Connect to the scheduler; wait for one that is not there."""
-        until = time.monotonic() + self._patience
-        while True:
-            try:
-                self._client = Client(self.address, timeout=5, direct_to_workers=True, set_as_default=False, name="lancer")
-                break
-            except (OSError, TimeoutError) as error:
-                self.trouble = f"waiting for the scheduler {self.address}"
-                if time.monotonic() > until or poll is not None and poll():
-                    raise PoolError(f"there is no scheduler at {self.address}: {error}") from error
-                time.sleep(_PAUSE)
-            except ValueError as error:
-                raise NoAddress(f"{self.address} is no address of a scheduler: {error}") from error
-        while not self._client.nthreads():
-            self.trouble = "waiting for workers"
-            if time.monotonic() > until or poll is not None and poll():
-                raise PoolError(f"the scheduler at {self.address} has no workers")
-            time.sleep(_PAUSE)
-        self.trouble = ""
-        self._looked = 0.0
-
-    def _send(self, poll):
-        """Bring the scene's bytes to one worker; the others fetch them from each other."""
-        name, data = self._scene
-        self._parcel = Variable(f"lancer-{uuid.uuid4().hex}", client=self._client)
-        try:
-            future = self._client.scatter(data, hash=False, direct=True)
-        except (OSError, TimeoutError):
-            # Workers behind the scheduler, which this machine cannot reach: all data go through it.
-            self._client.direct_to_workers = False
-            future = self._client.scatter(data, hash=False, direct=False)
-        self._parcel.set(future)
-        self._prepared, self._preparing = set(), []
-
-    def _parcel_of(self):
-        return dask_tasks.Parcel(self._parcel.name)
-
-    def _prepare(self):
-        """Let workers that are new read the scene before they get a task."""
-        for address in self._allowed():
-            if address not in self._prepared:
-                self._prepared.add(address)
-                # Dask forgets a task whose future nobody keeps.
-                self._preparing.append(
-                    self._client.submit(dask_tasks.prepare, self._scene[0], self._parcel_of(), workers=[address], pure=False)
-                )
-
-    def _allowed(self):
-        """Return the addresses of workers that get tasks."""
-        if time.monotonic() - self._looked > _FRESH:
-            try:
-                self._addresses = tuple(self._client.nthreads())
-            except (OSError, TimeoutError):
-                return self._addresses
-            self._looked = time.monotonic()
-        return [address for address in self._addresses if self._strikes.get(address, 0) < _MOST_STRIKES]
+    @property
+    def _client(self):
+        return self._scheduler.client
 
     def _begin(self, task, splits, workers=None):
         """Submit the pieces of a task and their joins."""
-        if workers is None and len(self._allowed()) < len(self._addresses):
-            workers = self._allowed()
         key = f"lancer-{task.number}-{uuid.uuid4().hex[:8]}"
-        options = {"pure": False, "workers": workers}
-        name, parcel = self._scene[0], self._parcel_of()
+        options = {"pure": False, "workers": workers or self._scheduler.choice()}
+        name, parcel = self._scheduler.scene
         futures = [
             self._client.submit(
                 dask_tasks.render, name, parcel, splits, task.piece(i), key=f"{key}-{i}", priority=-task.number, **options
@@ -272,7 +198,7 @@ class DaskPool:
 
     def _drop(self, attempts):
         futures = [future for attempt in attempts for future in attempt.futures]
-        if futures and self._client.status == "running":
+        if futures and self._scheduler.is_running:
             self._client.cancel(futures)
 
     def _help_slow(self):
@@ -286,7 +212,7 @@ class DaskPool:
                 attempt = several[0]
                 busy = {address for where in self._client.who_has(attempt.futures).values() for address in where}
                 busy |= self._processing(attempt)
-                free = [address for address in self._allowed() if address not in busy]
+                free = [address for address in self._scheduler.workers() if address not in busy]
                 if free:
                     several.append(self._begin(attempt.task, attempt.splits, free))
 
@@ -296,11 +222,9 @@ class DaskPool:
 
     def _is_lost(self, poll):
         """Whether the scheduler was lost; connects to the new one, and hands all tasks out again."""
-        if self._client.status == "running":
+        if self._scheduler.is_running:
             return False
-        self._client.close(timeout=1)
-        self._connect(poll)
-        self._send(poll)
+        self._scheduler.reconnect(poll)
         for number, several in list(self._attempts.items()):
             self._attempts[number] = [self._begin(several[0].task, several[0].splits)] if several else []
         return True

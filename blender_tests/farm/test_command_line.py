@@ -14,7 +14,7 @@ from given_pool import GivenPool
 from tiny_scenes import showroom
 
 from addon.bindings.abi import LancerError
-from addon.farm import arguments, dask_pool, render_command
+from addon.farm import arguments, dask_pool, dask_scheduler, render_command
 from addon.farm.__main__ import main
 from addon.farm.pool import PoolError
 
@@ -169,7 +169,7 @@ def test_failures_end_with_1(lancer, monkeypatch, error, sentence):
 
 
 def test_nobody_at_the_scheduler_is_waited_for_in_vain(lancer, monkeypatch):
-    monkeypatch.setattr(dask_pool, "Client", raising(OSError("nobody listens")))
+    monkeypatch.setattr(dask_scheduler, "Client", raising(OSError("nobody listens")))
     monkeypatch.setattr(dask_pool, "DaskPool", functools.partial(dask_pool.DaskPool, patience=0.0))
     code, out, err = lancer("scene.npz", "--scheduler", "tcp://127.0.0.1:1")
     assert (code, out) == (1, "")
@@ -177,7 +177,7 @@ def test_nobody_at_the_scheduler_is_waited_for_in_vain(lancer, monkeypatch):
 
 
 def test_missing_dask_is_told(lancer, monkeypatch):
-    for name in ("dask_pool", "dask_worker"):
+    for name in ("dask_pool", "dask_scheduler", "dask_worker"):
         monkeypatch.delitem(sys.modules, f"addon.farm.{name}", raising=False)
         monkeypatch.delattr(f"addon.farm.{name}", raising=False)
     monkeypatch.setitem(sys.modules, "distributed", None)
