@@ -110,6 +110,9 @@ class Scheduler:
                 time.sleep(_PAUSE)
             except ValueError as error:
                 raise NoAddress(f"{self.address} is no address of a scheduler: {error}") from error
+            except TypeError as error:
+                # Certificates are missing from Dask's configuration.
+                raise PoolError(f"the scheduler at {self.address} cannot be spoken to: {error}") from error
         while not self.client.nthreads():
             self.trouble = "waiting for workers"
             if time.monotonic() > until or poll is not None and poll():

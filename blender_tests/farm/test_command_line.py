@@ -176,6 +176,12 @@ def test_nobody_at_the_scheduler_is_waited_for_in_vain(lancer, monkeypatch):
     assert err == "lancer: there is no scheduler at tcp://127.0.0.1:1: nobody listens\n"
 
 
+def test_missing_certificates_are_told(lancer):
+    code, out, err = lancer("scene.npz", "--scheduler", "tls://127.0.0.1:1")
+    assert (code, out, err.count("\n")) == (1, "", 1)
+    assert err.startswith("lancer: the scheduler at tls://127.0.0.1:1 cannot be spoken to: TLS expects")
+
+
 def test_missing_dask_is_told(lancer, monkeypatch):
     for name in ("dask_pool", "dask_scheduler", "dask_worker"):
         monkeypatch.delitem(sys.modules, f"addon.farm.{name}", raising=False)
