@@ -50,9 +50,9 @@ logged = $(2) >$(1) 2>&1 || { cat $(1); exit 1; }
 platforms := linux-x64 linux-arm64 windows-x64 macos-arm64 macos-x64
 zig = $(realpath $(wildcard build/zig/lib/python3*/site-packages/ziglang/zig))
 
-.PHONY: build render test test-slow test-platforms mutants bench accuracy tradeoff farm-demo features pilot parity differ corpus course sanitize fuzz addon addons wheel bindings format clean help
+.PHONY: build render test test-slow test-platforms mutants bench accuracy tradeoff farm-demo scaling features pilot parity differ corpus course sanitize fuzz addon addons wheel bindings format clean help
 .PHONY: packages-build packages-run packages-test packages-fuzz packages-format packages-platforms packages-bench
-.PHONY: ready-run ready-test python-run python-test python-dev python-bench python-charts python-farm python-zig core-configured core-programs core-tests
+.PHONY: ready-run ready-test python-run python-test python-dev python-bench python-charts python-farm python-scaling python-zig core-configured core-programs core-tests
 
 build: packages-build ## build the core into addon/lib, where the add-on loads the library
 	@mkdir -p build
@@ -123,6 +123,9 @@ endif
 
 farm-demo: packages-run python-farm build ## render the showcase by a scheduler and two workers on this machine: make farm-demo [SAMPLES=64]
 	@$(python) scenes/farm_demo.py $(if $(SAMPLES),--samples $(SAMPLES))
+
+scaling: packages-run python-scaling build ## simulate stills on up to a thousand machines, from costs measured here: make scaling [QUICK=1] [ONLY='A,D'] [README=1]
+	@$(python) $(tools) scaling.run $(if $(QUICK),--quick) $(if $(ONLY),--only '$(ONLY)') $(if $(README),--readme)
 
 features: packages-run python-run build ## measure the cost of each feature, used and unused: make features [QUICK=1] [ONLY=glass]
 	@$(python) $(tools) features.run $(if $(QUICK),--quick) $(if $(ONLY),--only '$(ONLY)')
@@ -207,6 +210,9 @@ python-test: packages-test
 
 python-farm: packages-run
 	@$(PYTHON) .ci/environment.py $(VENV) run pictures farm
+
+python-scaling: packages-run
+	@$(PYTHON) .ci/environment.py $(VENV) run bench farm
 
 python-zig: packages-run
 	@$(PYTHON) .ci/environment.py build/zig zig
