@@ -11,6 +11,8 @@ from .pool import NoAddress, PoolError
 # Seconds between attempts to connect, and between looks at the list of workers.
 _PAUSE = 0.5
 _FRESH = 1.0
+# Workers that fetch the scene from one that got it from the client.
+_RECEIVERS = 16
 # Wrong parts after which a worker gets no more tasks.
 _MOST_STRIKES = 2
 
@@ -42,7 +44,7 @@ class Scheduler:
         self.send(*self._scene)
 
     def send(self, name, data):
-        """Bring the scene's bytes to one worker; the others fetch them from each other."""
+        """Bring the scene's bytes to some workers, from which the others fetch them: one alone would be slow, or be lost."""
         self._scene = name, data
         self._parcel = Variable(f"lancer-{uuid.uuid4().hex}", client=self.client)
         try:
@@ -51,6 +53,8 @@ class Scheduler:
             # Workers behind the scheduler, which this machine cannot reach: all data go through it.
             self.client.direct_to_workers = False
             future = self.client.scatter(data, hash=False, direct=False)
+        if len(self.workers()) > 1:
+            self.client.replicate([future], n=2 + len(self.workers()) // _RECEIVERS)
         self._parcel.set(future)
         self._prepared, self._preparing = set(), []
 

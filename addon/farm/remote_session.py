@@ -16,10 +16,11 @@ from . import worker
 from .cut import Round, whole_range
 from .pool import PoolError
 
-# Tasks on their way for each worker: one in work, and one that waits beside it.
+# Pieces of tasks on their way for each worker: one in work, and one that waits beside it.
 _AHEAD = 2
-# Seconds of work below which a task is not worth its way, and those of the longest one.
-_LEAST_SECONDS, _MOST_SECONDS = 0.2, 10.0
+# Seconds of work below which a task is not worth its way, and those of the longest one. A scheduler needs some thousandth of a
+# second for each task: with many workers, tasks are longer.
+_LEAST_SECONDS, _SECONDS_EACH, _MOST_SECONDS = 0.2, 0.001, 10.0
 # Failures of one task after which the picture ends.
 _MOST_FAILURES = 4
 
@@ -143,13 +144,16 @@ class RemoteSession:
     def _hand_out(self):
         """Give the pool as many tasks as its workers can have in work and in reserve."""
         workers = self.pool.workers
-        while not self._ended and self.pool.waiting < _AHEAD * max(1, workers):
-            least, most = max(1, self._rate * _LEAST_SECONDS), self._rate * _MOST_SECONDS or math.inf
+        least = max(1, self._rate * max(_LEAST_SECONDS, _SECONDS_EACH * workers))
+        most = self._rate * _MOST_SECONDS or math.inf
+        room = _AHEAD * max(1, workers) - sum(task.pieces for task in self._waiting.values())
+        while not self._ended and room > 0:
             task = self._round.take(workers, least, most, self._threads)
             if task is None:
                 break
             self._number = self._round.number
             self._waiting[task.number] = task
+            room -= task.pieces
             self.pool.submit(task, self.splits)
 
     def _take(self, done):

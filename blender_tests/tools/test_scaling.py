@@ -62,7 +62,7 @@ def test_equal_seeds_give_equal_figures():
     (terms.NETWORK, {}, {"bytes_per_second": 2e5}),
     (terms.CLIENT, {"submit": Spent(0.05, 0.0, 0.0)}, {}),
     (terms.SCHEDULER, {"submit": Spent(0.0, 0.05, 0.0)}, {}),
-    (terms.THREADS, {}, {"threads": 16}),
+    (terms.THREADS, {}, {"threads": 48}),
     (terms.WORKERS, {}, {"lost_per_second": 0.1}),
 ])  # fmt: skip
 def test_a_term_takes_time_and_no_other_one_does(term, changes, assumed):

@@ -135,6 +135,14 @@ class Cluster:
         machine.has[work] = True
         return work
 
+    def spread(self, work, count):
+        """Copy a result to further machines until that many have it; return their number."""
+        others = [machine for machine in self.machines.values() if machine not in work.holders]
+        for machine in self.random.sample(others, max(0, min(count - len(work.holders), len(others)))):
+            self.has_copy(work, machine)
+            machine.has[work] = True
+        return len(work.holders)
+
     def holder(self, work):
         """Return a machine that has a result, and sends little else; None while nobody has it."""
         alive = [machine for machine in work.holders if machine.is_alive]
