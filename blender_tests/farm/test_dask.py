@@ -5,6 +5,7 @@ import threading
 
 import pytest
 import small_cluster
+from distributed import Client
 from rich_snapshot import rich
 
 from addon.bindings.session import Session
@@ -93,8 +94,16 @@ def render(cluster, scene, expected, then=None, at=0.1):
 
 
 def test_two_workers_give_the_bits_of_one_process(cluster, by_samples):
-    session = render(cluster, snapshot(), by_samples)
+    copies = []
+
+    def count_copies():
+        with Client(cluster.address, set_as_default=False) as client:
+            copies.extend(len(holders) for key, holders in client.who_has().items() if key.startswith("ndarray"))
+
+    session = render(cluster, snapshot(), by_samples, count_copies)
     assert len(session.makers) == 2 and not session.refused
+    # The scene is not lost with one worker.
+    assert copies == [2]
     assert by_samples[2] is SAMPLES
     # Workers that decided for themselves would not be noticed where a sample follows one light and one path.
     assert max(session.splits) > 1
