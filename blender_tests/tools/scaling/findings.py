@@ -198,8 +198,8 @@ def _network(costs, stills):
 def _scene(costs, stills):
     told = [f"{still.letter} {seconds(rows[-1]['scene_came'])} with {_workers(rows[-1]['workers'])}" for still, rows in stills]
     return (
-        f"The worker that gets the scene's {costs.scene_bytes / 1e6:.0f} MB first sends them to each of the others. The last "
-        f"worker has them after: {', '.join(told)}."
+        f"Some workers get the scene's {costs.scene_bytes / 1e6:.0f} MB at first, and send them to the others. "
+        f"The last worker has them after: {', '.join(told)}."
     )
 
 
