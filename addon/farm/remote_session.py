@@ -8,6 +8,8 @@ import math
 import time
 from collections import Counter
 
+import numpy as np
+
 from ..bindings.abi import LancerError, Status
 from ..bindings.digest import scene_digest
 from ..bindings.parts import describe_part
@@ -21,6 +23,8 @@ _AHEAD = 2
 # Seconds of work below which a task is not worth its way, and those of the longest one. A scheduler needs some thousandth of a
 # second for each task: with many workers, tasks are longer.
 _LEAST_SECONDS, _SECONDS_EACH, _MOST_SECONDS = 0.2, 0.001, 10.0
+# Least seconds of a pixel sample: numbers of workers are not to be trusted.
+_LEAST_COST = 1e-12
 # Failures of one task after which the picture ends.
 _MOST_FAILURES = 4
 
@@ -53,7 +57,7 @@ class RemoteSession:
         self._before = 0  # pixel samples before the round
         self._threads = max(1, decision.figures["threads"])  # of a worker
         self._seconds, self._started = 0.0, None
-        self._rate = 0.0  # pixel samples per second of a worker
+        self._costs = np.zeros(len(self._pixels))  # seconds of a pixel sample of each tile; 0: unknown
         self._ended = self._cancelled = self._runs_on = False
         self.overlaps = False
         self.instruction_sets = {decision.figures["instruction_set"]}
@@ -144,8 +148,9 @@ class RemoteSession:
     def _hand_out(self):
         """Give the pool as many tasks as its workers can have in work and in reserve."""
         workers = self.pool.workers
-        least = max(1, self._rate * max(_LEAST_SECONDS, _SECONDS_EACH * workers))
-        most = self._rate * _MOST_SECONDS or math.inf
+        if self._costs.any() and not self._round.is_timed:
+            self._round.time(self._expected())
+        least, most = (max(_LEAST_SECONDS, _SECONDS_EACH * workers), _MOST_SECONDS) if self._round.is_timed else (0.0, math.inf)
         room = _AHEAD * max(1, workers) - sum(task.pieces for task in self._waiting.values())
         while not self._ended and room > 0:
             task = self._round.take(workers, least, most, self._threads)
@@ -180,8 +185,19 @@ class RemoteSession:
         for maker in made.by:
             self.makers[maker] += done.task.samples // len(made.by)
         if made.seconds > 0.0 and math.isfinite(made.seconds):
-            rate = done.task.samples / made.seconds
-            self._rate = 0.5 * (self._rate + rate) if self._rate else rate
+            self._learn(done.task, made.seconds)
+
+    def _learn(self, task, seconds):
+        """Scale the costs of a task's tiles so that the task would take that long: earlier tasks tell how its tiles differ."""
+        tiles = task.ranges["tile"]
+        costs = self._expected()[tiles]
+        samples = task.ranges["count"].astype(float) * self._pixels[tiles]
+        self._costs[tiles] = np.maximum(costs * (seconds / float(samples @ costs)), _LEAST_COST)
+
+    def _expected(self):
+        """Return the seconds of a pixel sample of each tile; those of unknown tiles are the mean of the others, or 1."""
+        known = self._costs > 0.0
+        return np.where(known, self._costs, self._costs[known].mean() if known.any() else 1.0)
 
     def _require_samples(self, task, part):
         """Raise LancerError for a part of other samples than its task's: they would be missing without a word."""

@@ -134,6 +134,23 @@ def test_every_thread_of_a_worker_has_a_tile(threads):
     assert samples_of(np.concatenate([one.ranges for one in tasks])) == samples_of(whole.ranges)
 
 
+def test_tasks_have_equal_work_where_samples_take_unequal_times():
+    seconds = np.where(np.arange(900) < 300, 1.0, 0.01)
+    whole = Round(whole_range(8, 8, 900), np.full(900, 100, np.uint32))
+    whole.time(seconds)
+    assert whole.is_timed and whole.samples == whole.left == 900 * 800
+    tasks, left = [], float(seconds.sum()) * 800.0
+    while (task := whole.take(4, least=900.0, most=20000.0)) is not None:
+        work = float(seconds[task.ranges["tile"]].sum()) * 800.0
+        share = min(max(900.0, left / 12.0), 20000.0)
+        assert share - 800.0 < work <= share + 1e-6 or whole.left == 0
+        tasks.append(task)
+        left -= work
+    assert samples_of(np.concatenate([task.ranges for task in tasks])) == samples_of(whole.ranges)
+    # The tasks before the last one are worth their way: many cheap tiles, where the first ones have few dear ones.
+    assert len(tasks[-2].ranges) > 100 and len(tasks[2].ranges) < 50
+
+
 def test_pieces_have_at_least_a_sample():
     (task,) = drained(Round(ranges_of([(0, 5, 3)]), np.array([128])), 50)
     assert task.pieces == 3 and [task.piece(index).tolist() for index in range(3)] == [[(0, 5 + i, 1)] for i in range(3)]

@@ -410,11 +410,35 @@ def test_tasks_follow_the_speed_of_workers():
     for speed in (1.0, 10000.0):
         pool = GivenPool(1, speed=speed)
         rendered_by(pool)
-        known = [task for number, task in pool.tasks.items() if number > 2]
+        # How long a sample takes is known from the second round on.
+        known = [task for task in pool.tasks.values() if task.ranges["first"].min() > 0]
         sizes[speed] = sorted({len(task.ranges) for task in known})
         assert all(task.samples <= 10.0 * speed or len(task.ranges) == 1 for task in known)
     # At 10000 samples a second 2000 samples are one task: the 720 pixels of a round, or most of four samples of each.
     assert sizes[1.0] == [1] and max(sizes[10000.0]) == 12
+
+
+def test_tasks_take_equal_times_where_tiles_do_not():
+    """Half of the tiles take a thousand times as long: once that is known, tasks of a round shrink in time, not in tiles."""
+
+    def seconds_of(task):
+        costs = np.where(task.ranges["tile"] < 6, 1.0, 0.001)
+        return float((costs * task.ranges["count"]).sum())
+
+    pool = GivenPool(2, lambda task, made, attempt: made._replace(seconds=seconds_of(task)))
+    with RemoteSession(picture(64), pool) as session:
+        render_still(session)
+    last = [task for task in pool.tasks.values() if task.ranges["first"].min() >= 32]
+    assert len(last) > 3
+    # The cheap half is one task, as it takes less than a fifth of a second; equal samples would make several.
+    assert sum(task.ranges["tile"].min() >= 6 for task in last) <= 1
+    assert max(seconds_of(task) / task.pieces for task in last) <= 10.0
+
+
+def test_a_time_that_no_task_takes_does_no_harm():
+    for seconds in (0.0, -1.0, 1e-300, 1e300, float("inf"), float("nan")):
+        pool = GivenPool(2, lambda task, made, attempt, seconds=seconds: made._replace(seconds=seconds))
+        rendered_by(pool)
 
 
 def test_makers_and_bytes_are_counted():
