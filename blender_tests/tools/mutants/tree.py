@@ -10,7 +10,7 @@ from pathlib import Path
 from tools.harness.places import ROOT
 
 # Beside sources and tests: the files that tests read.
-_PAGES = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")
+_PAGES = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "LICENSE")
 _COPIED = ("addon", "blender_tests", "core", "scenes", ".ci", "Makefile", "pyproject.toml", *_PAGES)
 _LEFT = {"__pycache__"}
 _LIBRARY = ("addon", "lib")
