@@ -27,7 +27,8 @@ class Scheduler:
         self.address, self.trouble, self.client = address, "", None
         self._patience = patience
         self._scene = None
-        self._parcel = None  # the variable that keeps the scene's bytes with the workers
+        self._parcels = []  # variables, each of which keeps a copy of the scene's bytes with a worker
+        self._bytes = None  # the future of the first copy
         self._strikes = {}
         self._addresses, self._looked = (), 0.0
         self._prepared, self._preparing = set(), []
@@ -39,6 +40,7 @@ class Scheduler:
 
     def reconnect(self, poll):
         """Connect to the scheduler that comes after a lost one, and send it the scene."""
+        self._bytes = None
         self.client.close(timeout=1)
         self._connect(poll)
         self.send(*self._scene)
@@ -46,22 +48,21 @@ class Scheduler:
     def send(self, name, data):
         """Bring the scene's bytes to some workers, from which the others fetch them: one alone would be slow, or be lost."""
         self._scene = name, data
-        self._parcel = Variable(f"lancer-{uuid.uuid4().hex}", client=self.client)
         try:
             future = self.client.scatter(data, hash=False, direct=True)
         except (OSError, TimeoutError):
             # Workers behind the scheduler, which this machine cannot reach: all data go through it.
             self.client.direct_to_workers = False
             future = self.client.scatter(data, hash=False, direct=False)
-        if len(self.workers()) > 1:
-            self.client.replicate([future], n=2 + len(self.workers()) // _RECEIVERS)
-        self._parcel.set(future)
+        self._bytes, self._parcels = future, []
+        self._keep(future)
+        self._looked = 0.0
         self._prepared, self._preparing = set(), []
 
     @property
     def scene(self):
         """The first two arguments of tasks that need the scene."""
-        return self._scene[0], dask_tasks.Parcel(self._parcel.name)
+        return self._scene[0], dask_tasks.Parcel(parcel.name for parcel in self._parcels)
 
     def prepare(self):
         """Let workers that are new read the scene before they get a task."""
@@ -76,10 +77,22 @@ class Scheduler:
         if time.monotonic() - self._looked > _FRESH:
             try:
                 self._addresses = tuple(self.client.nthreads())
+                self._copy_scene()
             except (OSError, TimeoutError):
                 return self._addresses
             self._looked = time.monotonic()
         return [address for address in self._addresses if self._strikes.get(address, 0) < _MOST_STRIKES]
+
+    def _copy_scene(self):
+        """Copy the scene's bytes to further workers, when more workers have come."""
+        count = len(self._addresses)
+        while self._bytes is not None and len(self._parcels) < min(count, 2 + count // _RECEIVERS):
+            place = {"workers": [self._addresses[-len(self._parcels)]], "allow_other_workers": True}
+            self._keep(self.client.submit(dask_tasks.copy, self._bytes, pure=False, **place))
+
+    def _keep(self, future):
+        self._parcels.append(Variable(f"lancer-{uuid.uuid4().hex}", client=self.client))
+        self._parcels[-1].set(future)
 
     def choice(self):
         """Return the workers among which Dask chooses; None: all."""
@@ -96,8 +109,8 @@ class Scheduler:
 
     def close(self):
         self._preparing = []
-        if self._parcel is not None and self.is_running:
-            self._parcel.delete()
+        for parcel in self._parcels if self.is_running else ():
+            parcel.delete()
         self.client.close()
 
     def _connect(self, poll):

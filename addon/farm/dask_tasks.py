@@ -1,27 +1,34 @@
 """The tasks of a picture as Dask's workers run them."""
 
 import os
+import random
 
-from distributed import Variable, get_client, get_worker
+from distributed import Variable, get_client, get_worker, wait
 
 from . import worker
 
 # Seconds that a worker waits for the bytes of a scene to be announced.
 _PATIENCE = 60
+# Copies of a scene of which a worker takes the first that is there.
+_CHOICES = 3
 
 
 class Parcel:
-    """The name of a Variable of the scheduler that holds a snapshot's bytes.
+    """The names of Variables of the scheduler, each of which holds a copy of a snapshot's bytes.
 
-    Dask would send the bytes anew with tasks that depend on them: a worker that lacks the scene fetches them once, from a
-    worker that has them.
+    Dask would send the bytes anew with tasks that depend on them: a worker that lacks the scene fetches them once, from any of
+    the workers that keep a copy.
     """
 
-    def __init__(self, name):
-        self.name = name
+    def __init__(self, names):
+        self.names = tuple(names)
 
     def __call__(self):
-        return Variable(self.name, client=get_client()).get(timeout=_PATIENCE).result()
+        names = random.sample(self.names, min(_CHOICES, len(self.names)))
+        copies = [Variable(name, client=get_client()).get(timeout=_PATIENCE) for name in names]
+        # Some copies may be lost with their workers, or not be made yet.
+        there = wait(copies, timeout=_PATIENCE, return_when="FIRST_COMPLETED").done
+        return next(copy for copy in copies if copy in there).result()
 
 
 def _threads():
@@ -44,6 +51,11 @@ class Failure:
 
     def __init__(self, text, by):
         self.text, self.by = text, by
+
+
+def copy(data):
+    """Return a copy of a scene's bytes, which this worker keeps: Dask forgets plain replicas within seconds."""
+    return data.copy()
 
 
 def decide(name, parcel):

@@ -1,6 +1,5 @@
 """What DaskPool asks of distributed's Client and Variable, answered by the simulated scheduler, and the client's own time."""
 
-import math
 from collections import Counter
 from concurrent.futures import CancelledError
 
@@ -52,7 +51,7 @@ class Client:
         self.fetched = self.parts = self.fetches = 0  # bytes and parts that have come, and requests for them
         ledger.spend(self._costs.connect_seconds, "submit")
 
-    def submit(self, function, *arguments, key=None, priority=0, workers=None, pure=True):
+    def submit(self, function, *arguments, key=None, priority=0, workers=None, pure=True, allow_other_workers=False):
         # The pool looks for workers that get no tasks.
         look = len(self._cluster.machines) * self._costs.list_seconds_per_worker
         self._ledger.spend(self._costs.submit.client + look, "submit")
@@ -121,15 +120,6 @@ class Client:
         assumed = self._assumed
         self._ledger.spend(self._scene_bytes / assumed.bytes_per_second + 2 * assumed.latency, "scene")
         return Future(self, self._cluster.keep(self._scene_bytes))
-
-    def replicate(self, futures, n):
-        """Copy results until n machines have each; the number of their holders doubles with each step."""
-        self._ask()
-        assumed = self._assumed
-        for future in futures:
-            holders = self._cluster.spread(future.work, n)
-            steps = math.ceil(math.log2(max(1, holders)))
-            self._ledger.spend(steps * (future.work.nbytes / assumed.bytes_per_second + 2 * assumed.latency), "scene")
 
     def nthreads(self):
         self._ask()

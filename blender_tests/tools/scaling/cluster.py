@@ -135,14 +135,6 @@ class Cluster:
         machine.has[work] = True
         return work
 
-    def spread(self, work, count):
-        """Copy a result to further machines until that many have it; return their number."""
-        others = [machine for machine in self.machines.values() if machine not in work.holders]
-        for machine in self.random.sample(others, max(0, min(count - len(work.holders), len(others)))):
-            self.has_copy(work, machine)
-            machine.has[work] = True
-        return len(work.holders)
-
     def holder(self, work):
         """Return a machine that has a result, and sends little else; None while nobody has it."""
         alive = [machine for machine in work.holders if machine.is_alive]
@@ -154,7 +146,8 @@ class Cluster:
 
     def fetch_parcel(self, parcel, machine, act):
         """Bring what a parcel names to a machine, which asks the scheduler where it is, and keeps no copy for others."""
-        kept = self.parcels[parcel.name]
+        copies = [self.parcels[name] for name in parcel.names]
+        kept = self.random.choice([one for one in copies if self.holder(one) is not None] or copies)
         self.messages += 4
 
         def found():

@@ -37,7 +37,7 @@ class Probe:
         self.client.wait_for_workers(count, timeout=60)
         self._variable = Variable("no-scene", client=self.client)
         self._variable.set(self.client.scatter(np.frombuffer(_PICTURE, np.uint8), hash=False, direct=True))
-        self.parcel = dask_tasks.Parcel("no-scene")
+        self.parcel = dask_tasks.Parcel(["no-scene"])
 
     def spent(self, work):
         """Return work()'s result, and the seconds of client, scheduler and workers."""

@@ -14,7 +14,7 @@ from .parts import joined, part_of
 # Machines that a worker sends results to at once, and seconds until one that was turned away asks again, as in distributed.
 _RECEIVERS, _RETRY = 50, 0.15
 # Names of the functions of dask_tasks; the one that prepares does nothing else than bring the scene.
-DECIDE, RENDER, JOIN = "decide", "render", "join"
+DECIDE, RENDER, JOIN, COPY = "decide", "render", "join", "copy"
 
 
 def speeds(count, assumed):
@@ -126,7 +126,7 @@ class Renderer:
         source.send(missing[0].nbytes, arrived, self)
 
     def _bring_scene(self, work):
-        if self.has_scene or work.kind == JOIN:
+        if self.has_scene or work.kind in (JOIN, COPY):
             self._do(work)
             return
 
@@ -158,6 +158,8 @@ class Renderer:
             seconds, nbytes = seconds + taken, part.nbytes
             made = worker.Made(part, taken, (self.address,), "simulated")
             self.busy += taken
+        elif work.kind == COPY:
+            nbytes = work.needs[0].nbytes
         elif work.kind == JOIN:
             made, taken = self.picture.join([one.result for one in work.needs])
             seconds, nbytes = seconds + taken, made.part.nbytes
