@@ -11,10 +11,28 @@ from .pool import NoAddress, PoolError
 # Seconds between attempts to connect, and between looks at the list of workers.
 _PAUSE = 0.5
 _FRESH = 1.0
-# Workers that fetch the scene from one that got it from the client.
+# Workers for each copy of the scene.
 _RECEIVERS = 16
+# Statuses of a future whose result is gone.
+_LOST = ("cancelled", "lost", "error")
 # Wrong parts after which a worker gets no more tasks.
 _MOST_STRIKES = 2
+
+
+class _Copy:
+    """A scene's bytes on a worker, announced to all workers by a variable, under whose name a lost copy is replaced."""
+
+    def __init__(self, client):
+        self.variable = Variable(f"lancer-{uuid.uuid4().hex}", client=client)
+        self.address = self.future = None
+
+    def set(self, address, future):
+        self.address, self.future = address, future
+        self.variable.set(future)
+
+    @property
+    def is_lost(self):
+        return self.future is None or self.future.status in _LOST
 
 
 class Scheduler:
@@ -27,8 +45,7 @@ class Scheduler:
         self.address, self.trouble, self.client = address, "", None
         self._patience = patience
         self._scene = None
-        self._parcels = []  # variables, each of which keeps a copy of the scene's bytes with a worker
-        self._bytes = None  # the future of the first copy
+        self._copies = []  # of the scene's bytes
         self._strikes = {}
         self._addresses, self._looked = (), 0.0
         self._prepared, self._preparing = set(), []
@@ -40,7 +57,7 @@ class Scheduler:
 
     def reconnect(self, poll):
         """Connect to the scheduler that comes after a lost one, and send it the scene."""
-        self._bytes = None
+        self._copies = []
         self.client.close(timeout=1)
         self._connect(poll)
         self.send(*self._scene)
@@ -48,21 +65,15 @@ class Scheduler:
     def send(self, name, data):
         """Bring the scene's bytes to some workers, from which the others fetch them: one alone would be slow, or be lost."""
         self._scene = name, data
-        try:
-            future = self.client.scatter(data, hash=False, direct=True)
-        except (OSError, TimeoutError):
-            # Workers behind the scheduler, which this machine cannot reach: all data go through it.
-            self.client.direct_to_workers = False
-            future = self.client.scatter(data, hash=False, direct=False)
-        self._bytes, self._parcels = future, []
-        self._keep(future)
-        self._looked = 0.0
         self._prepared, self._preparing = set(), []
+        self._copies = [_Copy(self.client)]
+        self._addresses = tuple(self.client.nthreads())
+        self._copy_scene()
 
     @property
     def scene(self):
         """The first two arguments of tasks that need the scene."""
-        return self._scene[0], dask_tasks.Parcel(parcel.name for parcel in self._parcels)
+        return self._scene[0], self._parcel
 
     def prepare(self):
         """Let workers that are new read the scene before they get a task."""
@@ -83,16 +94,38 @@ class Scheduler:
             self._looked = time.monotonic()
         return [address for address in self._addresses if self._strikes.get(address, 0) < _MOST_STRIKES]
 
-    def _copy_scene(self):
-        """Copy the scene's bytes to further workers, when more workers have come."""
-        count = len(self._addresses)
-        while self._bytes is not None and len(self._parcels) < min(count, 2 + count // _RECEIVERS):
-            place = {"workers": [self._addresses[-len(self._parcels)]], "allow_other_workers": True}
-            self._keep(self.client.submit(dask_tasks.copy, self._bytes, pure=False, **place))
+    @property
+    def _parcel(self):
+        return dask_tasks.Parcel(copy.variable.name for copy in self._copies)
 
-    def _keep(self, future):
-        self._parcels.append(Variable(f"lancer-{uuid.uuid4().hex}", client=self.client))
-        self._parcels[-1].set(future)
+    def _copy_scene(self):
+        """Replace copies that were lost with their workers, and add some when more workers have come."""
+        if not self._copies or not self._addresses:
+            return
+        lost = [copy for copy in self._copies if copy.is_lost]
+        if len(lost) == len(self._copies):
+            self._send_bytes(lost.pop())
+        count = len(self._addresses)
+        new = [_Copy(self.client) for _ in range(len(self._copies), min(count, 2 + count // _RECEIVERS))]
+        used = {copy.address for copy in self._copies if not copy.is_lost}
+        free = [address for address in self._addresses if address not in used]
+        parcel = self._parcel
+        for copy, address in zip(lost + new, free, strict=False):
+            place = {"workers": [address], "allow_other_workers": True, "pure": False}
+            copy.set(address, self.client.submit(dask_tasks.copy, parcel, **place))
+        self._copies += [copy for copy in new if copy.future is not None]
+
+    def _send_bytes(self, copy):
+        """Bring the scene's bytes from this machine to a worker."""
+        address = self._addresses[0]
+        options = {"workers": [address], "hash": False}
+        try:
+            future = self.client.scatter(self._scene[1], direct=True, **options)
+        except (OSError, TimeoutError):
+            # Workers behind the scheduler, which this machine cannot reach: all data go through it.
+            self.client.direct_to_workers = False
+            future = self.client.scatter(self._scene[1], direct=False, **options)
+        copy.set(address, future)
 
     def choice(self):
         """Return the workers among which Dask chooses; None: all."""
@@ -109,8 +142,8 @@ class Scheduler:
 
     def close(self):
         self._preparing = []
-        for parcel in self._parcels if self.is_running else ():
-            parcel.delete()
+        for copy in self._copies if self.is_running else ():
+            copy.variable.delete()
         self.client.close()
 
     def _connect(self, poll):

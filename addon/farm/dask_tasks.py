@@ -1,15 +1,19 @@
 """The tasks of a picture as Dask's workers run them."""
 
+import contextlib
 import os
 import random
+import time
+from asyncio import CancelledError
 
-from distributed import Variable, get_client, get_worker, wait
+from distributed import Variable, get_client, get_worker
 
+from ..bindings.abi import LancerError
 from . import worker
 
-# Seconds that a worker waits for the bytes of a scene to be announced.
-_PATIENCE = 60
-# Copies of a scene of which a worker takes the first that is there.
+# Seconds that a worker waits for the bytes of a scene, and between two looks for them.
+_PATIENCE, _STEP = 60.0, 0.2
+# Copies of a scene among which a worker looks for one that is there.
 _CHOICES = 3
 
 
@@ -24,11 +28,20 @@ class Parcel:
         self.names = tuple(names)
 
     def __call__(self):
-        names = random.sample(self.names, min(_CHOICES, len(self.names)))
-        copies = [Variable(name, client=get_client()).get(timeout=_PATIENCE) for name in names]
-        # Some copies may be lost with their workers, or not be made yet.
-        there = wait(copies, timeout=_PATIENCE, return_when="FIRST_COMPLETED").done
-        return next(copy for copy in copies if copy in there).result()
+        until = time.monotonic() + _PATIENCE
+        while time.monotonic() < until:
+            # A copy may be lost with its worker, or not be made yet; the client replaces it under its name.
+            for name in random.sample(self.names, min(_CHOICES, len(self.names))):
+                copy = Variable(name, client=get_client()).get(timeout=_PATIENCE)
+                if copy.status == "finished":
+                    with contextlib.suppress(Exception, CancelledError):
+                        return copy.result()
+            time.sleep(_STEP)
+        raise LostScene("the scene is lost with the workers that had it")
+
+
+class LostScene(LancerError):
+    """No worker has the bytes of a scene any more."""
 
 
 def _threads():
@@ -42,6 +55,9 @@ def _told(work, *arguments):
         return work(*arguments)
     except worker.WrongPart as error:
         return Failure(str(error), error.by)
+    except LostScene as error:
+        # The client brings it again; this worker is not to blame.
+        return Failure(str(error), ())
     except Exception as error:
         return Failure(f"{type(error).__name__}: {error}", (get_worker().address,))
 
@@ -53,9 +69,9 @@ class Failure:
         self.text, self.by = text, by
 
 
-def copy(data):
-    """Return a copy of a scene's bytes, which this worker keeps: Dask forgets plain replicas within seconds."""
-    return data.copy()
+def copy(parcel):
+    """Return the bytes of a scene, which this worker keeps: Dask forgets the replicas of dependencies within seconds."""
+    return parcel()
 
 
 def decide(name, parcel):

@@ -122,6 +122,17 @@ def test_a_killed_worker_loses_nothing(cluster, by_samples):
     render(cluster, snapshot(), by_samples, lambda: cluster.stop(cluster.processes[1]))
 
 
+def test_the_scene_is_brought_again_when_all_its_workers_are_gone(cluster, by_samples):
+    def replace():
+        for worker in cluster.processes[1:3]:
+            cluster.stop(worker)
+        cluster.start_worker()
+
+    session = render(cluster, snapshot(), by_samples, replace)
+    # No worker is blamed for a scene that was lost.
+    assert len(session.makers) == 3
+
+
 def test_a_late_worker_helps(cluster, by_samples):
     def come():
         cluster.start_worker()

@@ -69,7 +69,7 @@ def test_parts_that_are_fetched_at_once_share_the_waiting():
     seconds = []
     for at_once, in_turn in ((False, True), (True, True), (False, False)):
         cluster, client = machines(1, assumed=dataclasses.replace(EQUAL, in_turn=in_turn))
-        futures = [client.scatter(None) for _ in range(10)]
+        futures = [client.scatter(None, list(cluster.machines)) for _ in range(10)]
         for number, future in enumerate(futures):
             future.work.result, future.work.is_told = number, True
         before = cluster.clock.now

@@ -116,10 +116,10 @@ class Client:
         for work in works:
             self._cluster.forget(work)
 
-    def scatter(self, data, hash=True, direct=None):
+    def scatter(self, data, workers, hash=True, direct=None):
         assumed = self._assumed
         self._ledger.spend(self._scene_bytes / assumed.bytes_per_second + 2 * assumed.latency, "scene")
-        return Future(self, self._cluster.keep(self._scene_bytes))
+        return Future(self, self._cluster.keep(self._scene_bytes, *workers))
 
     def nthreads(self):
         self._ask()

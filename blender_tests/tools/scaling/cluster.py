@@ -126,10 +126,10 @@ class Cluster:
 
         self._serve(0.5 * self.costs.submit.scheduler, heard)
 
-    def keep(self, nbytes):
-        """Put bytes of the client to one machine; return them as work that is done."""
+    def keep(self, nbytes, address):
+        """Put bytes of the client to a machine; return them as work that is done."""
         work = Work(next(self._numbers), "data", (), 0, None, [])
-        machine = self.random.choice(list(self.machines.values()))
+        machine = self.machines[address]
         work.nbytes, work.is_made, work.machine = nbytes, True, machine
         work.holders.append(machine)
         machine.has[work] = True

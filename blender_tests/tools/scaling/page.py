@@ -101,7 +101,7 @@ def assumptions():
     yield f"Workers have {given.threads} threads. Their speeds are log-normal, with mean 1 and sigma {given.spread}."
     yield f"{100 * given.slow_share:.0f} % of the workers take {given.slowness:.0f} times as long."
     lost = f"{6000 * given.lost_per_second:.1f} %"
-    yield f"A worker is lost with a probability of {lost} in each minute, unless it alone has the scene's bytes."
+    yield f"A worker is lost with a probability of {lost} in each minute, unless it keeps a copy of the scene."
     yield f"A message takes {1000 * given.latency:.1f} ms. All links of a still are equal; only their sender's end is busy."
     yield "Parts, tasks and messages cost the same with any number of workers; processors are as fast as this one."
     yield "The cost of samples and their noise vary over the picture as in the measured scene, at 480 x 270 pixels."

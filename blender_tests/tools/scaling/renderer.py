@@ -126,7 +126,7 @@ class Renderer:
         source.send(missing[0].nbytes, arrived, self)
 
     def _bring_scene(self, work):
-        if self.has_scene or work.kind in (JOIN, COPY):
+        if self.has_scene or work.kind == JOIN:
             self._do(work)
             return
 
@@ -159,7 +159,7 @@ class Renderer:
             made = worker.Made(part, taken, (self.address,), "simulated")
             self.busy += taken
         elif work.kind == COPY:
-            nbytes = work.needs[0].nbytes
+            nbytes = self.picture.all.scene_bytes
         elif work.kind == JOIN:
             made, taken = self.picture.join([one.result for one in work.needs])
             seconds, nbytes = seconds + taken, made.part.nbytes
