@@ -82,7 +82,7 @@ def measure(snapshot, seconds=10.0, poll=None, tell=None, library=None, denoised
     denoised: has prepared(settings), for sessions whose pictures are to be denoised, and error_of(session), the (error, high)
     of the denoised picture or None.
 
-    Raise Cancelled if poll returns True, LancerError if the picture is too small for an error.
+    Raise Cancelled if poll returns True, LancerError if the trial renders have no error.
     """
     started = time.monotonic()
     tell = tell or (lambda fraction, text: None)
@@ -101,7 +101,7 @@ def measure(snapshot, seconds=10.0, poll=None, tell=None, library=None, denoised
         even = run.even(small, begun + 2.0 * _EVEN_SHARE * seconds)
         refined = run.refined(large)
     if not (even and refined):
-        raise LancerError("the picture is too small for an estimate of its error")
+        raise LancerError("the error of the trial renders is unknown, so that nothing follows from them")
     return Measured(tuple(refined), tuple(even), _pixels(large), _pixels(small), begun - started, classic)
 
 

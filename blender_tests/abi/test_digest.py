@@ -27,7 +27,7 @@ def test_equal_scenes_have_equal_digests():
 def test_any_change_of_the_scene_changes_it_and_none_of_camera_and_settings():
     snapshot, kept, refused = rich(), set(), set()
     names = [field.name for field in dataclasses.fields(snapshot)]
-    # Nothing but the changed part of the scene, which is quicker.
+    # Digest the changed part of the scene alone, which is quicker.
     alone = {name: SceneSnapshot(**{name: getattr(snapshot, name)}) for name in names}
     before = {name: scene_digest(alone[name]) for name in names}
     paths = list(leaves(snapshot))

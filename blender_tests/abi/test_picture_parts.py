@@ -168,7 +168,7 @@ def test_a_part_tells_camera_and_settings(name):
     with Session.joiner(digest, CAMERAS[name], settings) as session:
         about = describe_part(session.export())
     assert (about.digest, about.camera) == (digest, CAMERAS[name])
-    # What changes no bit is not told.
+    # A part does not tell settings that change no bit.
     assert about.settings == settings.replaced(features=0, threads=0, tile_size=0)
     assert (about.samples, about.tiles, about.first, about.end) == (0, 0, 0, 0)
     with Session.joiner(about.digest, about.camera, about.settings) as again:

@@ -9,13 +9,13 @@ import sys
 
 import OpenImageIO as oiio
 import pytest
+from command_line import called
 from conftest import ROOT
 from given_pool import GivenPool
 from tiny_scenes import showroom
 
 from addon.bindings.abi import LancerError
 from addon.farm import arguments, dask_pool, dask_scheduler, render_command
-from addon.farm.__main__ import main
 from addon.farm.pool import PoolError
 
 SCENE = showroom(16, samples=4)
@@ -36,16 +36,7 @@ def place(tmp_path, monkeypatch):
 @pytest.fixture
 def lancer(capsys):
     """Return a function that runs the command and returns (exit code, standard output, standard error)."""
-
-    def run(*words):
-        try:
-            code = main([str(word) for word in words])
-        except SystemExit as ended:
-            code = ended.code
-        said = capsys.readouterr()
-        return code, said.out, said.err
-
-    return run
+    return functools.partial(called, capsys)
 
 
 def test_the_module_is_a_program():

@@ -10,6 +10,7 @@ import stat
 import numpy as np
 import OpenImageIO as oiio
 import pytest
+from command_line import called
 from picture_parts import all_of, joiner, opened, rendered
 from tiny_scenes import lambert, showroom, with_settings
 
@@ -38,15 +39,7 @@ def place(tmp_path, monkeypatch):
 @pytest.fixture
 def lancer(capsys):
     """Return a function that runs the command and returns (exit code, standard error)."""
-
-    def run(*words):
-        try:
-            code = main([str(word) for word in words])
-        except SystemExit as ended:
-            code = ended.code
-        return code, capsys.readouterr().err
-
-    return run
+    return lambda *words: called(capsys, *words)[::2]
 
 
 def part_words(number, parts, output, scene="scene.npz", samples=SAMPLES):
@@ -237,7 +230,7 @@ def umask():
     return mask
 
 
-# What is given to merge beside or instead of five right parts, and the words about the file that is named.
+# Files for merge beside or instead of five right parts, and the words about the file that is named.
 WRONG = {
     "missing": (lambda parts: [*parts[:4], "nothing.lancer"], "nothing.lancer: there is no such file"),
     "repeated": (

@@ -1,4 +1,4 @@
-// What the program knows of its scenes and sessions.
+// The program's knowledge of its scenes and sessions.
 #pragma once
 
 #include "records.h"

@@ -33,7 +33,7 @@ struct MadeTile {
   float difference = 0.25f, brightest = 0.75f, depth = 3.0f;
   std::vector<uint64_t> dropped = {};
   uint32_t first_dropped[3] = {0, 0, 0};
-  // What its head tells.
+  // The numbers in its head.
   uint32_t told_nodes = 1, told_dropped = 0, told_first = 1;
 
   void tell() {

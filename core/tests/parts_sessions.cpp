@@ -29,7 +29,7 @@ MadeTile of_samples(uint32_t start, uint32_t level, uint32_t tile = 0) {
   return made;
 }
 
-// Both tiles have samples 0 ... 11, or tile 0 lacks four of them.
+// Samples 0 ... 11 of both tiles, or of tile 0 four fewer.
 Bytes twelve_samples(bool gap) {
   MadeTile tiles[2] = {of_samples(0, 3), of_samples(0, 3, 1)};
   tiles[0].nodes.push_back({gap ? 12u : 8u, 2, 4.0});

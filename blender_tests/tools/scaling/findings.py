@@ -20,7 +20,7 @@ BUSY_HEAD = (
     "still", "workers", "workers render", "scheduler", "client: tasks", "client: fetching", "client: waiting for parts",
     "client: joining", "client: error and plan",
 )  # fmt: skip
-# What the client does, in the columns of BUSY_HEAD.
+# Kinds of work of the client, in the columns of BUSY_HEAD.
 _BUSY = (("submit", "ask", "look"), ("fetch",), ("wait for a part",), ("join",), ("judge",))
 
 

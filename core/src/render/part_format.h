@@ -1,4 +1,4 @@
-// What the writing and the reading of parts share.
+// Numbers and words that the writing and the reading of parts share.
 #pragma once
 
 #include "scene/messages.h"

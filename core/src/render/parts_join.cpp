@@ -155,7 +155,7 @@ Incoming read_tile(Reader &reader, const Film &film, int64_t last) {
   return incoming;
 }
 
-// Both have their sums by rising start.
+// The part and the film have their sums by rising start.
 void require_apart(const Incoming &incoming, const Film::Tile &tile) {
   auto node = incoming.nodes.begin();
   auto other = tile.nodes.begin();
