@@ -19,7 +19,7 @@ windows_python=org.bytedeco:cpython:3.12.1-1.5.10:jar:windows-x86_64
 windows_runtime=org.bytedeco:javacpp:1.5.10:jar:windows-x86_64
 # Dependencies of the bindings' tests; tests that need a compiler or another process, or measure time, run only on this
 # platform.
-packages="numpy scipy pytest iniconfig packaging pluggy pygments colorama trimesh mpmath"
+packages="numpy scipy pytest pytest-timeout iniconfig packaging pluggy pygments colorama trimesh mpmath"
 tests="abi/test_abi abi/test_abi_handles abi/test_abi_sessions abi/test_abi_states abi/test_library_file abi/test_snapshot
   abi/test_picture_parts abi/test_part_bytes
   physics/test_classic physics/test_camera physics/test_nodes physics/test_pass_values blender/test_uses"
