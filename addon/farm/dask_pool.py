@@ -58,12 +58,16 @@ class DaskPool:
                     return None
                 if self._is_lost(poll):
                     break
+                # The task waits for a scene that is lost with its workers, until the scene is brought again.
+                scheduler.workers()
                 time.sleep(_STEP)
             if not future.done() or future.status in ("cancelled", "lost"):
                 continue
             try:
-                made = future.result()
+                made = scheduler.results([future])[0]
             except Exception as error:
+                if self._is_lost(poll):
+                    continue
                 made = dask_tasks.Failure(f"{type(error).__name__}: {error}", ())
             if not isinstance(made, dask_tasks.Failure):
                 return made
@@ -90,6 +94,8 @@ class DaskPool:
         found, until = [], time.monotonic() + seconds
         while not found and (left := until - time.monotonic()) > 0.0:
             self._is_lost(None)
+            # As in decide().
+            self._scheduler.workers()
             self._help_slow()
             attempts = self._arrivals(min(left, 0.2))
             results = self._results(attempts)
@@ -162,7 +168,7 @@ class DaskPool:
         if len(futures) < 2:
             return {}
         try:
-            results = self._client.gather(futures)
+            results = self._scheduler.results(futures)
         except Exception:
             # One of them fails: each is asked for its own failure.
             return {}
@@ -176,7 +182,7 @@ class DaskPool:
             return []
         future = attempt.futures[-1]
         try:
-            made = results[future.key] if future.key in results else future.result()
+            made = results[future.key] if future.key in results else self._scheduler.results([future])[0]
         except Exception as error:
             made = None
             if future.status in ("cancelled", "lost") or isinstance(error, (OSError, TimeoutError)):

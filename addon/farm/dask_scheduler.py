@@ -1,5 +1,7 @@
 """A scheduler of Dask as the client of a still knows it: waited for, connected again after its restart, and given the scene."""
 
+import asyncio
+import concurrent.futures
 import time
 import uuid
 
@@ -11,12 +13,25 @@ from .pool import NoAddress, PoolError
 # Seconds between attempts to connect, and between looks at the list of workers.
 _PAUSE = 0.5
 _FRESH = 1.0
+# Seconds between looks while results come.
+_STEP = 0.05
 # Workers for each copy of the scene.
 _RECEIVERS = 16
 # Statuses of a future whose result is gone.
 _LOST = ("cancelled", "lost", "error")
 # Wrong parts after which a worker gets no more tasks.
 _MOST_STRIKES = 2
+
+
+def gathered(client, futures, look):
+    """Return the results of futures. Until they are here, call look() many times a second; it may raise to give up."""
+    fetching = asyncio.run_coroutine_threadsafe(client.gather(futures, asynchronous=True), client.loop.asyncio_loop)
+    try:
+        while not concurrent.futures.wait([fetching], _STEP).done:
+            look()
+    finally:
+        fetching.cancel()
+    return fetching.result()
 
 
 class _Copy:
@@ -33,6 +48,10 @@ class _Copy:
     @property
     def is_lost(self):
         return self.future is None or self.future.status in _LOST
+
+    @property
+    def is_there(self):
+        return self.future is not None and self.future.status == "finished"
 
 
 class Scheduler:
@@ -83,8 +102,18 @@ class Scheduler:
                 # Dask forgets a task whose future nobody keeps.
                 self._preparing.append(self.client.submit(dask_tasks.prepare, *self.scene, workers=[address], pure=False))
 
+    def results(self, futures):
+        """Return the results of futures. One that is lost with its worker is made anew, which may need the scene again."""
+
+        def look():
+            if not self.is_running:
+                raise ConnectionError("the scheduler is lost")
+            self.workers()
+
+        return gathered(self.client, futures, look)
+
     def workers(self):
-        """Return the addresses of workers that get tasks."""
+        """Return the addresses of workers that get tasks, and see to it that the scene is with some of them."""
         if time.monotonic() - self._looked > _FRESH:
             try:
                 self._addresses = tuple(self.client.nthreads())
@@ -103,8 +132,9 @@ class Scheduler:
         if not self._copies or not self._addresses:
             return
         lost = [copy for copy in self._copies if copy.is_lost]
-        if len(lost) == len(self._copies):
-            self._send_bytes(lost.pop())
+        # A copy that is still being made waits for another one that is there.
+        if not any(copy.is_there for copy in self._copies):
+            self._send_bytes(lost.pop() if lost else self._copies[0])
         count = len(self._addresses)
         new = [_Copy(self.client) for _ in range(len(self._copies), min(count, 2 + count // _RECEIVERS))]
         used = {copy.address for copy in self._copies if not copy.is_lost}

@@ -14,10 +14,10 @@ import numpy as np
 from addon.bindings.parts import describe_part
 from addon.bindings.session import Session
 from addon.bindings.snapshot import Camera, SceneSnapshot, Settings
-from addon.farm import dask_pool, remote_session, still
+from addon.farm import dask_pool, dask_scheduler, remote_session, still
 from addon.measure import schedule
 
-from .client import Client, Ledger, Variables
+from .client import Client, Ledger, Variables, gathered
 from .clock import Clock, Queues
 from .cluster import Cluster
 from .film import Film, Plane
@@ -150,6 +150,7 @@ def _simulated(clock, cluster, ledger, film, costs):
         (queue, Queues(clock)),
         (distributed.Client, client),
         (distributed.Variable, Variables(cluster.parcels)),
+        (dask_scheduler.gathered, gathered),
         (Session, SimpleNamespace(joiner=lambda *_: film)),
         (describe_part, film.describe),
     ]
