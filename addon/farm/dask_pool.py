@@ -187,9 +187,10 @@ class DaskPool:
             made = None
             if future.status in ("cancelled", "lost") or isinstance(error, (OSError, TimeoutError)):
                 # The scheduler has forgotten it: begin again.
-                others.remove(attempt)
-                if not self._is_lost(None) and not others:
-                    others.append(self._begin(task, attempt.splits))
+                if not self._is_lost(None):
+                    others.remove(attempt)
+                    if not others:
+                        others.append(self._begin(task, attempt.splits))
                 return []
             failure = Done(task, None, f"{type(error).__name__}: {error}")
         if isinstance(made, dask_tasks.Failure):
@@ -232,5 +233,5 @@ class DaskPool:
             return False
         self._scheduler.reconnect(poll)
         for number, several in list(self._attempts.items()):
-            self._attempts[number] = [self._begin(several[0].task, several[0].splits)] if several else []
+            self._attempts[number] = [self._begin(several[0].task, several[0].splits)]
         return True
