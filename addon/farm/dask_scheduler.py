@@ -125,7 +125,7 @@ class Scheduler:
 
     @property
     def _parcel(self):
-        return dask_tasks.Parcel(copy.variable.name for copy in self._copies)
+        return dask_tasks.Parcel([copy.variable.name for copy in self._copies])
 
     def _copy_scene(self):
         """Replace copies that were lost with their workers, and add some when more workers have come."""
@@ -135,15 +135,22 @@ class Scheduler:
         # A copy that is still being made waits for another one that is there.
         if not any(copy.is_there for copy in self._copies):
             self._send_bytes(lost.pop() if lost else self._copies[0])
-        count = len(self._addresses)
-        new = [_Copy(self.client) for _ in range(len(self._copies), min(count, 2 + count // _RECEIVERS))]
+        there = [copy for copy in self._copies if copy.is_there]
         used = {copy.address for copy in self._copies if not copy.is_lost}
         free = [address for address in self._addresses if address not in used]
-        parcel = self._parcel
-        for copy, address in zip(lost + new, free, strict=False):
-            place = {"workers": [address], "allow_other_workers": True, "pure": False}
-            copy.set(address, self.client.submit(dask_tasks.copy, parcel, **place))
-        self._copies += [copy for copy in new if copy.future is not None]
+        # A copy that is replaced comes from one that is there, so that no two copies wait for each other.
+        for copy, address in zip([copy for copy in lost if copy.is_lost], free, strict=False):
+            self._make(copy, address, there)
+            free = free[1:]
+        count = len(self._addresses)
+        for address in free[: max(0, min(count, 2 + count // _RECEIVERS) - len(self._copies))]:
+            self._copies.append(_Copy(self.client))
+            self._make(self._copies[-1], address, self._copies, len(self._copies) - 1)
+
+    def _make(self, copy, address, sources, number=None):
+        """Let a worker make a copy from one of the sources; number: of a new copy among them."""
+        parcel = dask_tasks.Parcel([one.variable.name for one in sources], number)
+        copy.set(address, self.client.submit(dask_tasks.copy, parcel, workers=[address], allow_other_workers=True, pure=False))
 
     def _send_bytes(self, copy):
         """Bring the scene's bytes from this machine to a worker."""

@@ -11,31 +11,40 @@ from distributed import Variable, get_client, get_worker
 from ..bindings.abi import LancerError
 from . import worker
 
-# Seconds that a worker waits for the bytes of a scene, and between two looks for them.
-_PATIENCE, _STEP = 60.0, 0.2
-# Copies of a scene among which a worker looks for one that is there.
-_CHOICES = 3
+# Seconds that a worker waits for a lost scene, and for one that is on its way; seconds between two looks.
+_PATIENCE, _LONGEST, _STEP = 60.0, 600.0, 0.2
 
 
 class Parcel:
     """The names of Variables of the scheduler, each of which holds a copy of a snapshot's bytes.
 
-    Dask would send the bytes anew with tasks that depend on them: a worker that lacks the scene fetches them once, from any of
-    the workers that keep a copy.
+    Dask would send the bytes anew with tasks that depend on them: a worker that lacks the scene fetches them once, from a
+    worker that keeps a copy. number: that of a copy to be made among the names, which are a binary tree; None for a reader. A
+    reader takes a leaf, so that the network is left to copies that others wait for.
     """
 
-    def __init__(self, names):
-        self.names = tuple(names)
+    def __init__(self, names, number=None):
+        self.names, self.number = tuple(names), number
+
+    def choose(self):
+        """Return the name of the copy that serves best."""
+        if self.number:
+            return self.names[(self.number - 1) // 2]
+        return random.choice(self.names[len(self.names) // 2 :])
 
     def __call__(self):
-        until = time.monotonic() + _PATIENCE
-        while time.monotonic() < until:
-            # A copy may be lost with its worker, or not be made yet; the client replaces it under its name.
-            for name in random.sample(self.names, min(_CHOICES, len(self.names))):
-                copy = Variable(name, client=get_client()).get(timeout=_PATIENCE)
-                if copy.status == "finished":
-                    with contextlib.suppress(Exception, CancelledError):
-                        return copy.result()
+        name, begun = self.choose(), time.monotonic()
+        hopeful = begun  # when the copy was last on its way
+        while time.monotonic() - hopeful < _PATIENCE and time.monotonic() - begun < _LONGEST:
+            copy = Variable(name, client=get_client()).get(timeout=_PATIENCE)
+            if copy.status == "finished":
+                with contextlib.suppress(Exception, CancelledError):
+                    return copy.result()
+            if copy.status == "pending":
+                hopeful = time.monotonic()
+            else:
+                # It is lost with its worker; the client replaces it under its name.
+                name = random.choice(self.names)
             time.sleep(_STEP)
         raise LostScene("the scene is lost with the workers that had it")
 

@@ -15,6 +15,8 @@ from .clock import Server
 MESSAGES = 6
 # Tasks that a worker of one thread has at most while others wait: distributed.scheduler.worker-saturation, rounded up.
 _MOST = 2
+# Seconds between two looks of a worker for a copy of the scene: dask_tasks.
+_LOOK = 0.2
 # Seconds between two searches for work that idle workers can take, and how many workers lose some of it: stealing.py.
 _STEAL_EVERY, _VICTIMS = 1.0, 10
 
@@ -146,13 +148,14 @@ class Cluster:
 
     def fetch_parcel(self, parcel, machine, act):
         """Bring what a parcel names to a machine, which asks the scheduler where it is, and keeps no copy for others."""
-        copies = [self.parcels[name] for name in parcel.names]
-        kept = self.random.choice([one for one in copies if self.holder(one) is not None] or copies)
+        kept = self.parcels[parcel.choose()]
         self.messages += 4
 
         def found():
             source = self.holder(kept)
-            if source is not None:
+            if source is None:
+                self.clock.after(_LOOK, found)
+            else:
                 source.send(kept.nbytes, act, None)
 
         self._serve(self.costs.scene.scheduler, lambda: self.clock.after(self.assumed.latency, found))
