@@ -26,11 +26,11 @@ class Parcel:
     def __init__(self, names, number=None):
         self.names, self.number = tuple(names), number
 
-    def choose(self):
-        """Return the name of the copy that serves best."""
+    def choose(self, chance=random):
+        """Return the name of the copy that serves best. chance: the module random, or a random.Random."""
         if self.number:
             return self.names[(self.number - 1) // 2]
-        return random.choice(self.names[len(self.names) // 2 :])
+        return chance.choice(self.names[len(self.names) // 2 :])
 
     def __call__(self):
         name, begun = self.choose(), time.monotonic()

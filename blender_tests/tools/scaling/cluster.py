@@ -148,7 +148,7 @@ class Cluster:
 
     def fetch_parcel(self, parcel, machine, act):
         """Bring what a parcel names to a machine, which asks the scheduler where it is, and keeps no copy for others."""
-        kept = self.parcels[parcel.choose()]
+        kept = self.parcels[parcel.choose(self.random)]
         self.messages += 4
 
         def found():
