@@ -137,7 +137,9 @@ class Scheduler:
             self._send_bytes(lost.pop() if lost else self._copies[0])
         there = [copy for copy in self._copies if copy.is_there]
         used = {copy.address for copy in self._copies if not copy.is_lost}
+        # A worker that is new may be waiting for a copy, and could not make it meanwhile.
         free = [address for address in self._addresses if address not in used]
+        free.sort(key=lambda address: address not in self._prepared)
         # A copy that is replaced comes from one that is there, so that no two copies wait for each other.
         for copy, address in zip([copy for copy in lost if copy.is_lost], free, strict=False):
             self._make(copy, address, there)

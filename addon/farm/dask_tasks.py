@@ -13,6 +13,8 @@ from . import worker
 
 # Seconds that a worker waits for a lost scene, and for one that is on its way; seconds between two looks.
 _PATIENCE, _LONGEST, _STEP = 60.0, 600.0, 0.2
+# Seconds after which a worker looks for another copy: its own thread may be needed for the one that it waits for.
+_LOYALTY = 20.0
 
 
 class Parcel:
@@ -34,17 +36,17 @@ class Parcel:
 
     def __call__(self):
         name, begun = self.choose(), time.monotonic()
-        hopeful = begun  # when the copy was last on its way
-        while time.monotonic() - hopeful < _PATIENCE and time.monotonic() - begun < _LONGEST:
+        hopeful = chosen = begun  # when a copy was last on its way, and when this one was chosen
+        while (now := time.monotonic()) - hopeful < _PATIENCE and now - begun < _LONGEST:
             copy = Variable(name, client=get_client()).get(timeout=_PATIENCE)
             if copy.status == "finished":
                 with contextlib.suppress(Exception, CancelledError):
                     return copy.result()
             if copy.status == "pending":
-                hopeful = time.monotonic()
-            else:
-                # It is lost with its worker; the client replaces it under its name.
-                name = random.choice(self.names)
+                hopeful = now
+            # The client replaces a copy that is lost with its worker under its name.
+            if copy.status != "pending" or now - chosen >= _LOYALTY:
+                name, chosen = random.choice(self.names), now
             time.sleep(_STEP)
         raise LostScene("the scene is lost with the workers that had it")
 

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from addon.farm import dask_scheduler
+from addon.farm import dask_scheduler, dask_tasks
 from addon.farm.dask_tasks import Parcel
 
 
@@ -104,3 +104,29 @@ def test_the_bytes_are_sent_again_when_no_copy_is_there(scheduler):
     look(scheduler, ["b", "c"])
     # The other copy is being made from the lost one.
     assert made.future.status == "pending" and scheduler.client.sent[1:] == ["b"] and kept.is_there
+
+
+def test_a_reader_turns_to_another_copy_than_one_that_does_not_come(monkeypatch):
+    """The copy may wait for the reader's own thread."""
+    copies = {
+        "there": SimpleNamespace(status="finished", result=lambda: b"bytes"),
+        "pending": SimpleNamespace(status="pending"),
+    }
+    monkeypatch.setattr(dask_tasks, "Variable", lambda name, client: SimpleNamespace(get=lambda timeout: copies[name]))
+    monkeypatch.setattr(dask_tasks, "get_client", lambda: None)
+    monkeypatch.setattr(dask_tasks, "_LOYALTY", 0.0)
+    monkeypatch.setattr(dask_tasks, "_LONGEST", 10.0)
+    monkeypatch.setattr(dask_tasks, "_STEP", 0.001)
+    assert Parcel(["there", "pending"])() == b"bytes"
+
+
+def test_a_new_worker_makes_no_copy_while_others_can(scheduler):
+    look(scheduler, ["a", "b", "c"])
+    scheduler.send("scene", b"bytes")
+    look(scheduler, ["a", "b", "c"])
+    scheduler._prepared.update("abc")
+    first, second = scheduler._copies
+    second.future.status = "lost"
+    rest = sorted({"a", "b", "c"} - {second.address})
+    look(scheduler, ["0 new", *rest])
+    assert second.address in rest
