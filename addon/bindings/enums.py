@@ -5,7 +5,7 @@ Generated from core/include/lancer.h by `make bindings`; changes here are lost.
 
 from enum import IntEnum, IntFlag
 
-ABI_VERSION = 10
+ABI_VERSION = 11
 MOST_NODES = 4096
 DEEPEST_RECURSION = 16
 
@@ -150,6 +150,41 @@ class NodeKind(IntEnum):
     OBJECT_INFO = 26
     LIGHT_PATH = 27
     COLOR_MODEL = 28
+    WAVE = 29
+    MAGIC = 30
+    CHECKER = 31
+    BRICK = 32
+    WHITE_NOISE = 33
+    GABOR = 34
+    RADIAL_TILING = 35
+    WIREFRAME = 36
+    VECTOR_TRANSFORM = 37
+    IES = 38
+
+
+class Profile(IntEnum):
+    SIN = 0
+    SAW = 1
+    TRI = 2
+
+
+class Wave(IntEnum):
+    """Bands across an axis, or rings around it."""
+
+    BANDS_X = 0
+    BANDS_Y = 1
+    BANDS_Z = 2
+    BANDS_DIAGONAL = 3
+    RINGS_X = 4
+    RINGS_Y = 5
+    RINGS_Z = 6
+    RINGS_SPHERICAL = 7
+
+
+class Space(IntEnum):
+    WORLD = 0
+    OBJECT = 1
+    CAMERA = 2
 
 
 class AttributeFlag(IntFlag):
@@ -257,6 +292,7 @@ class Coordinate(IntEnum):
     INCOMING = 10
     BACKFACING = 11
     PARAMETRIC = 12
+    FROM_CAMERA = 13
 
 
 class Projection(IntEnum):

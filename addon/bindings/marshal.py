@@ -148,7 +148,7 @@ def world(w):
 
 
 def light(li):
-    return _struct(abi.Light, li)
+    return _struct(abi.Light, li, **_nodes(li))
 
 
 def camera(c):

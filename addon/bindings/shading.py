@@ -31,7 +31,7 @@ def _parameter(value):
     return tuple(float(x) for x in value) if isinstance(value, (tuple, list, np.ndarray)) else float(value)
 
 
-class _Parameters(Record):
+class Parameters(Record):
     """A record with the parameters of a struct of lancer.h and their defaults."""
 
     PARAMETERS = ()
@@ -91,7 +91,7 @@ class Node(Record):
 
 @register
 @dataclass(frozen=True, eq=False)
-class Principled(_Parameters, struct=structs.Principled):
+class Principled(Parameters, struct=structs.Principled):
     rules: int = Rules.BLENDER_45
     distribution: int = Distribution.MULTI_GGX
     option: int = 1
@@ -99,7 +99,7 @@ class Principled(_Parameters, struct=structs.Principled):
 
 @register
 @dataclass(frozen=True, eq=False)
-class Lobe(_Parameters, struct=structs.Lobe):
+class Lobe(Parameters, struct=structs.Lobe):
     kind: int = LobeKind.LAMBERT
     color: object
     distribution: int = Distribution.GGX
@@ -110,7 +110,7 @@ class Lobe(_Parameters, struct=structs.Lobe):
 
 @register
 @dataclass(frozen=True, eq=False)
-class Material(_Parameters, struct=structs.Material):
+class Material(Parameters, struct=structs.Material):
     name: str = ""
     lobes: tuple[Lobe, ...] = (Lobe(),)
     nodes: tuple[Node, ...] = ()
@@ -125,7 +125,7 @@ class Material(_Parameters, struct=structs.Material):
 
 @register
 @dataclass(frozen=True, eq=False)
-class World(_Parameters, struct=structs.World):
+class World(Parameters, struct=structs.World):
     radiance: object
     nodes: tuple[Node, ...] = ()
     hidden_from: int = 0  # Ray bits

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field, make_dataclass
 
 import numpy as np
 
+from . import structs
 from .enums import (
     Accelerator,
     AreaShape,
@@ -24,7 +25,7 @@ from .enums import (
 )
 from .npz import SnapshotError, load_npz, register, save_npz
 from .record import Record, array
-from .shading import Image, Lobe, Material, Node, NodeRef, Principled, World  # noqa: F401 - all records have one address
+from .shading import Image, Lobe, Material, Node, NodeRef, Parameters, Principled, World  # noqa: F401 - all records have one address
 from .structs import SETTINGS
 
 _IDENTITY = np.eye(4)[:3]
@@ -199,7 +200,7 @@ class InstanceTable(Record):
 
 @register
 @dataclass(frozen=True, eq=False)
-class Light(Record):
+class Light(Parameters, struct=structs.Light):
     name: str = ""
     matrix: np.ndarray = field(default_factory=lambda: _IDENTITY)
     kind: int = LightKind.POINT
@@ -221,8 +222,12 @@ class Light(Record):
     specular_color: tuple = (1.0, 1.0, 1.0)
     hidden_from: int = Ray.CAMERA  # bits; by default lamps are invisible to the camera
     no_shadow: bool = False
+    strength: object
+    nodes: tuple[Node, ...] = ()
 
     def __post_init__(self):
+        super().__post_init__()
+        self.set("nodes", tuple(self.nodes))
         self.set("matrix", array(np.asarray(self.matrix, float)[:3], np.float64, (3, 4), f"light '{self.name}': matrix"))
         self.vectors(emission=3, size=2, ambient_color=3, diffuse_color=3, specular_color=3)
 

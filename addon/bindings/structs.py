@@ -174,6 +174,9 @@ class Light(Structure):
 
     _fields_ = [
         ("name", c_char_p),
+        ("nodes", POINTER(Node)),
+        ("node_count", c_uint32),
+        ("strength", Parameter),
         ("matrix", c_double * 12),
         ("kind", c_uint32),
         ("emission", c_float * 3),
@@ -499,6 +502,9 @@ PARAMETERS = {
         "ambient": ("color", (0.0, 0.0, 0.0)),
         "displacement": ("vector", (0.0, 0.0, 0.0)),
         "normal": ("direction", (0.0, 0.0, 0.0)),
+    },
+    Light: {
+        "strength": ("vector", (1.0, 1.0, 1.0)),
     },
     World: {
         "radiance": ("color", (0.0, 0.0, 0.0)),

@@ -5,7 +5,9 @@ import numpy as np
 
 from ..bindings.enums import Domain
 from ..bindings.snapshot import MeshAttribute
-from .edges import at_vertices
+from .edges import at_vertices, edge_ends
+from .islands import island_attribute
+from .pointiness import pointiness_attribute
 from .tangents import corner_tangents
 
 _TANGENT = "tangent:"
@@ -14,6 +16,8 @@ _NAMED = "named:"
 POLYGONS = "polygons:"
 # Requested like an attribute: the rendered colours with their alpha, where a node gives no name.
 RENDER_COLOR = "render color:"
+# Names that Cycles gives to attributes of its own, even if the mesh has others of these names.
+ISLANDS, POINTINESS = "random_per_island", "pointiness"
 _DOMAINS = {"POINT": Domain.VERTEX, "EDGE": Domain.VERTEX, "FACE": Domain.FACE, "CORNER": Domain.CORNER}
 # The attribute types that Cycles reads: the field that holds a value, the type of its numbers, and how many of them are used.
 TYPES = {
@@ -35,7 +39,11 @@ if bpy.app.version >= (4, 1):
 
 def attribute_name(name):
     """Return the name of a Blender attribute in a snapshot, in which some names are reserved."""
-    is_taken = name in ("generated", POLYGONS, RENDER_COLOR) or name.startswith((_TANGENT, _NAMED)) or name.endswith(" ")
+    is_taken = (
+        name in ("generated", ISLANDS, POINTINESS, POLYGONS, RENDER_COLOR)
+        or name.startswith((_TANGENT, _NAMED))
+        or name.endswith(" ")
+    )
     return _NAMED + name if is_taken else name
 
 
@@ -74,6 +82,10 @@ def read_attributes(mesh, data, wanted, corners, faces, poll):
             found.append(_generated(mesh))
         elif name.startswith(_TANGENT):
             found.append(_tangents(mesh, data, name, corners, poll))
+        elif name == ISLANDS:
+            found.append(island_attribute(mesh, name, data.triangles, poll))
+        elif name == POINTINESS:
+            found.append(pointiness_attribute(mesh, name, data.positions, poll))
         else:
             found.append(_named(mesh, name, corners, faces))
     return tuple(attribute for attribute in found if attribute is not None)
@@ -138,6 +150,8 @@ def attribute_sources(mesh, wanted):
                 yield read_uv_map(layer)
             else:
                 yield _undeformed(mesh) if _is_spherical(mesh, name) else None
+        elif name in (ISLANDS, POINTINESS):
+            yield edge_ends(mesh)
         else:
             values, domain = _found(mesh, name) or (None, None)
             yield values

@@ -4,13 +4,13 @@ import bpy
 import numpy as np
 from mathutils import Euler
 
-from ..bindings.enums import AttributeFlag, Coordinate, MappingType, NodeKind, ObjectFact, PathFact, VectorOperation
+from ..bindings.enums import AttributeFlag, Coordinate, MappingType, NodeKind, ObjectFact, PathFact, Space, VectorOperation
 from ..bindings.shading import NodeRef
 from ..host.by_scene import identity
 from .arithmetic import THIRDS, divide
-from .attributes import RENDER_COLOR, attribute_name, tangents_name
+from .attributes import ISLANDS, POINTINESS, RENDER_COLOR, attribute_name, tangents_name
 from .maths import transformed
-from .object_attributes import PREFIXES
+from .object_attributes import LAMPS_ARE_OBJECTS, PREFIXES
 from .properties import view_layer_value
 
 _RADIAL = {"X": 0, "Y": 1, "Z": 2}
@@ -18,10 +18,13 @@ ALONG_U = 3
 # Flag of TANGENT for the world: its tangent is 0; since 5.2, a direction across the ray.
 _TANGENT_OF_WORLD = 1 if bpy.app.version < (5, 2) else 2
 # Names of attributes that Cycles computes itself.
-_UNREAD = {"N", "generated_transform", "pointiness", "random_per_island", "tangent", "tangent_sign"}
+_UNREAD = {"N", "generated_transform", "tangent", "tangent_sign"}
 if bpy.app.version < (4, 5):
     _UNREAD |= {"Ng", "undisplaced"}
 _TANGENTS = (".tangent", ".tangent_sign")
+# Option of VECTOR_TRANSFORM.
+NORMALS = 2
+_LAMPS_HAVE_UV = bpy.app.version >= (4, 0)
 # Before 4.5 a bump does not see how the normal of texture coordinates changes.
 _NORMAL_FLAGS = int(bpy.app.version < (4, 5))
 
@@ -42,6 +45,7 @@ _GEOMETRY = {
     "Parametric": Coordinate.PARAMETRIC,
     "Backfacing": Coordinate.BACKFACING,
 }
+_COMPUTED = {"Pointiness": POINTINESS, "Random Per Island": ISLANDS}
 _OBJECT_FACTS = {
     "Location": ObjectFact.LOCATION,
     "Color": ObjectFact.COLOR,
@@ -69,11 +73,29 @@ _PATH_FACTS = {
 
 
 def coordinate(graph, which, name=""):
+    if graph.is_of_lamp:
+        return _of_lamp(graph, which, name)
     if which == Coordinate.GENERATED:
         graph.attributes.add("generated")
     if which == Coordinate.UV and name:
         graph.attributes.add(attribute_name(name))
     return graph.emit(NodeKind.COORDINATE, option=which, name=attribute_name(name))
+
+
+def _of_lamp(graph, which, name):
+    """Return a coordinate at a point of a lamp, which before 4.5 is no object, and before 4.0 has no UV map."""
+    if which in (Coordinate.GENERATED, Coordinate.OBJECT):
+        which = Coordinate.OBJECT if LAMPS_ARE_OBJECTS else Coordinate.POSITION
+    elif which == Coordinate.UV:
+        if name or not _LAMPS_HAVE_UV:
+            return 0.0, 0.0, 0.0
+        which = Coordinate.PARAMETRIC
+    elif which == Coordinate.REFLECTION and not LAMPS_ARE_OBJECTS:
+        which = Coordinate.INCOMING
+    elif which == Coordinate.CAMERA and not LAMPS_ARE_OBJECTS:
+        place = graph.emit(NodeKind.COORDINATE, option=Coordinate.POSITION)
+        return graph.emit(NodeKind.VECTOR_TRANSFORM, place, option=1, flags=Space.WORLD | Space.CAMERA << 2)
+    return graph.emit(NodeKind.COORDINATE, option=which)
 
 
 def _texture_coordinate(graph, site, output):
@@ -109,10 +131,13 @@ def _uv_map(graph, site, output):
     return coordinate(graph, Coordinate.UV, site.node.uv_map)
 
 
-def _named(graph, name, flags=0):
+def named_value(graph, name, flags=0):
     # Cycles gives this name to Generated coordinates, even if the mesh has an attribute of that name.
     if name == "generated":
         return coordinate(graph, Coordinate.GENERATED)
+    if name in (ISLANDS, POINTINESS):
+        graph.attributes.add(name)
+        return graph.emit(NodeKind.ATTRIBUTE, name=name, flags=int(flags))
     if name:
         graph.attributes.add(attribute_name(name))
     return graph.emit(NodeKind.ATTRIBUTE, name=attribute_name(name), flags=int(flags))
@@ -133,12 +158,14 @@ def _attribute(graph, site, output):
         # The world has no attributes: Cycles 5.2 takes the mean of a direction for its alpha.
         if name == "generated" and graph.is_of_world and bpy.app.version >= (5, 2):
             return graph.vector_op(VectorOperation.DOT_PRODUCT, coordinate(graph, Coordinate.GENERATED), THIRDS)
-        return 1.0 if name in ("uv", "generated") else graph.emit(NodeKind.ALPHA, _named(graph, name, AttributeFlag.OPAQUE))
+        return (
+            1.0 if name in ("uv", "generated") else graph.emit(NodeKind.ALPHA, named_value(graph, name, AttributeFlag.OPAQUE))
+        )
     is_number = output.identifier == "Fac"
     if name == "uv":
         value = coordinate(graph, Coordinate.UV)
         return graph.component(value, 0) if is_number else value
-    value = _named(graph, "" if name == "vertex_color" else name, AttributeFlag.FIRST if is_number else 0)
+    value = named_value(graph, "" if name == "vertex_color" else name, AttributeFlag.FIRST if is_number else 0)
     return graph.vector_op(VectorOperation.DOT_PRODUCT, value, THIRDS) if is_number else value
 
 
@@ -164,8 +191,8 @@ def _property(graph, node, output):
 def _vertex_color(graph, site, output):
     name = site.node.layer_name
     if output.identifier != "Alpha":
-        return _named(graph, name)
-    return graph.emit(NodeKind.ALPHA, _named(graph, name)) if name else _render_alpha(graph)
+        return named_value(graph, name)
+    return graph.emit(NodeKind.ALPHA, named_value(graph, name)) if name else _render_alpha(graph)
 
 
 def _render_alpha(graph, flags=0):
@@ -181,17 +208,21 @@ def _geometry(graph, site, output):
     if name == "Normal" and isinstance(graph.normal, NodeRef):
         return graph.normal
     which = _GEOMETRY.get(name)
-    return None if which is None else coordinate(graph, which)
+    return graph.component(named_value(graph, _COMPUTED[name]), 0) if which is None else coordinate(graph, which)
 
 
 def default_tangent(graph):
     """Return the tangent around the object's z axis, Cycles' default for anisotropic surfaces."""
+    if graph.is_of_lamp:
+        return 0.0, 0.0, 0.0
     graph.attributes.add("generated")
     return graph.emit(NodeKind.TANGENT, graph.normal, option=_RADIAL["Z"], flags=_TANGENT_OF_WORLD)
 
 
 def _tangent(graph, site, output):
     node = site.node
+    if graph.is_of_lamp:
+        return 0.0, 0.0, 0.0
     if node.direction_type == "RADIAL":
         graph.attributes.add("generated")
         return graph.emit(NodeKind.TANGENT, graph.normal, option=_RADIAL[node.axis])
@@ -227,22 +258,15 @@ def mapping_matrix(kind, location, angles, scale):
 def _object_info(graph, site, output):
     if output.identifier == "Material Index":
         return float(graph.material_index)
+    if graph.lamp_value is not None:
+        found = graph.lamp_value(output.identifier)
+        return found[:3] if output.type in ("VECTOR", "RGBA") else found[3] if output.identifier == "Alpha" else found[0]
     value = graph.emit(NodeKind.OBJECT_INFO, option=_OBJECT_FACTS[output.identifier])
     return graph.emit(NodeKind.ALPHA, value) if output.identifier == "Alpha" else value
 
 
 def _light_path(graph, site, output):
     return graph.emit(NodeKind.LIGHT_PATH, option=_PATH_FACTS[output.identifier])
-
-
-def _transform(graph, site, output):
-    node = site.node
-    if node.convert_from != node.convert_to:
-        return None
-    value = graph.value(site, 0)
-    # Blender 3 normalises normals that stay in their space, too.
-    is_unit = node.vector_type == "NORMAL" and bpy.app.version < (4, 0)
-    return graph.vector_op(VectorOperation.NORMALIZE, value) if is_unit else value
 
 
 READERS = {
@@ -254,6 +278,5 @@ READERS = {
     "TANGENT": _tangent,
     "TEX_COORD": _texture_coordinate,
     "UVMAP": _uv_map,
-    "VECT_TRANSFORM": _transform,
     "VERTEX_COLOR": _vertex_color,
 }

@@ -14,14 +14,14 @@ _TURN = 2.0 * np.pi
 
 def at_vertices(mesh, attribute, values):
     """Return the values of an edge attribute at the vertices, (vertices, channels). values: of each edge."""
-    ends, count = _ends(mesh), len(mesh.vertices)
+    ends, count = edge_ends(mesh), len(mesh.vertices)
     mix = _MIXES.get(attribute.data_type) if _MIXES_BY_TYPE else None
     if mix is not None:
         return mix(attribute, values, ends, count)
     return _mean(values, ends, count).astype(np.float32)
 
 
-def _ends(mesh):
+def edge_ends(mesh):
     """Return the vertices of each edge, (edges, 2)."""
     data = built_in(mesh, ".edge_verts", "EDGE")
     if data is not None:

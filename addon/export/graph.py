@@ -16,13 +16,13 @@ import bpy
 from ..bindings.enums import VectorOperation
 from ..bindings.shading import NodeRef
 from ..messages.severity import Severity
-from . import colors, coordinates, curves, maths, normals, procedural, textures
+from . import colors, coordinates, curves, ies, maths, normals, patterns, places, procedural, spectrum, textures
 from .arithmetic import THIRDS, triple
 from .node_builder import UNKNOWN, NodeBuilder, in_three
 from .sockets import find
 from .walk import Site, Walker
 
-_MODULES = (maths, colors, curves, coordinates, normals, textures, procedural)
+_MODULES = (maths, colors, curves, coordinates, normals, textures, procedural, patterns, places, spectrum, ies)
 _READERS = {kind: reader for module in _MODULES for kind, reader in module.READERS.items()}
 _SCALARS = {"VALUE", "INT", "BOOLEAN"}
 _VECTORS = {"VECTOR", "ROTATION"}
@@ -39,7 +39,9 @@ class NodeGraph(NodeBuilder):
         self.attributes = set()  # names of mesh attributes that the nodes read
         self.objects = set()  # identities of the objects whose transform the nodes read
         self.is_of_world = False  # whether the nodes are seen in a direction, and not at a place of a mesh
-        self.lamp_value = None  # for a lamp: a function that returns four numbers by the name of an ObjectAttribute
+        self.is_of_lamp = False  # whether the nodes are seen at a point of a lamp
+        # For a lamp: a function that returns four numbers by the name of an ObjectAttribute or of LAMP_FACTS.
+        self.lamp_value = None
         self.reads_layer = False  # whether the nodes read properties of the view layer, the scene or its world
         self.material_index = 0  # of the owner; 0 if the owner is no material
         self.normal = (0.0, 0.0, 0.0)  # the bumped normal of the whole material; (0, 0, 0) is the shading normal

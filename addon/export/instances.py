@@ -11,8 +11,8 @@ from ..bindings.snapshot import InstanceTable
 from ..messages.severity import Severity
 from .apart import read_infos
 from .flat import report_flat
-from .lights import export_light
-from .object_attributes import AttributeReader, read_object_attributes
+from .lights import export_lamp_nodes, export_light
+from .object_attributes import LAMPS_ARE_OBJECTS, AttributeReader, read_object_attributes
 from .objects import Objects
 from .unsupported import check_hair
 
@@ -21,7 +21,6 @@ _SHOWN_AS_MESH = {"CURVE", "FONT", "META", "SURFACE"}
 # Types without a surface. Blender itself draws strokes over the image.
 _SHOWS_NOTHING = {"ARMATURE", "CAMERA", "EMPTY", "GPENCIL", "GREASEPENCIL", "LATTICE", "LIGHT_PROBE", "SPEAKER"}
 # Before 4.5 the visibility of an instancer does not apply to its lights.
-_LIGHTS_ARE_OBJECTS = bpy.app.version >= (4, 5)
 # Before 5.0 foreach_get over all entries leaks the temporary object with the mesh of a text object, if it is the first entry.
 _LEAKS_FIRST = bpy.app.version < (5, 0)
 _POLL_EVERY = 256
@@ -70,6 +69,7 @@ class Instances:
         self.messages = messages
         self.lights = []
         self._space = space
+        self._parts = parts
         self._reader = AttributeReader(depsgraph, messages)
         self._objects = Objects(depsgraph, materials, messages, kept, parts)
         self._rows = {}
@@ -201,16 +201,29 @@ class Instances:
     def _add_other(self, thing, entry):
         if thing.type == "LIGHT":
             hidden = None
-            if _LIGHTS_ARE_OBJECTS:
+            if LAMPS_ARE_OBJECTS:
                 narrowed = self._narrowed_by(entry.parent) if entry.is_instance else None
                 hidden, _ = self._objects.sight(thing, narrowed)
-            value = functools.partial(self._reader.of_lamp, entry)
-            light = export_light(thing, entry.matrix_world, self.messages, self.depsgraph, hidden, value)
+            shine = self._lamp_nodes(thing, entry)
+            light = export_light(thing, entry.matrix_world, self.messages, self.depsgraph, hidden, shine)
             if light is not None:
                 self.lights.append(light)
         elif thing.type not in _SHOWN_AS_MESH and thing.type not in _SHOWS_NOTHING:
             text = f"object '{thing.name}': type {thing.type} is not supported, it is left out"
             self.messages.add(text, f"feature:{thing.type.lower()} object", severity=Severity.LEFT_OUT)
+
+    def _lamp_nodes(self, thing, entry):
+        value = functools.partial(self._reader.of_lamp, entry)
+        materials = self._objects.materials
+        if self._parts is None:
+            return export_lamp_nodes(thing, self.messages, materials.images, self.depsgraph, value)
+
+        def read(messages, images):
+            return export_lamp_nodes(thing, messages, images, self.depsgraph, value)
+
+        # Instances of one lamp may differ in what their nodes read of the object.
+        place = tuple(entry.persistent_id) if entry.is_instance else ()
+        return self._parts.shader((thing, thing.data), self.messages, read, place)
 
     def _check_hair(self, thing):
         key = thing.original.as_pointer()

@@ -6,8 +6,8 @@ import numpy as np
 from ..bindings.enums import AreaShape, LightKind
 
 
-def axes_of(kind, matrix):
-    """Return the matrix with columns of unit length; a zero column becomes the unit vector of its axis.
+def axes_of(kind, matrix, keeps_scale=False):
+    """Return the matrix with columns of unit length, or of their own; a zero column becomes the unit vector of its axis.
 
     The z axis of a flattened area lamp becomes the normal of its plane. A spot before 4.0 keeps z alone, as Cycles did.
     """
@@ -23,6 +23,8 @@ def axes_of(kind, matrix):
         x = np.cross(np.eye(3)[np.abs(z).argmin()], z)
         result[:, 0] = x / np.linalg.norm(x)
         result[:, 1] = np.cross(z, result[:, 0])
+    if keeps_scale:
+        result[:, :3] *= np.where(lengths > 0.0, lengths, 1.0)
     return result
 
 

@@ -1,6 +1,7 @@
 """Blender's watts as the quantities of lancer.h: radiant intensity, irradiance, radiance."""
 
 import math
+from typing import NamedTuple
 
 import bpy
 import numpy as np
@@ -19,10 +20,32 @@ from .visibility import object_hidden_from
 _KINDS = {"POINT": LightKind.POINT, "SPOT": LightKind.SPOT, "SUN": LightKind.SUN, "AREA": LightKind.AREA}
 
 
-def export_light(thing, matrix_world, messages, depsgraph=None, hidden=None, value=None):
+class LampNodes(NamedTuple):
+    """What the nodes of a lamp give: the factor of its light, with the nodes that it refers to."""
+
+    strength: object = (1.0, 1.0, 1.0)
+    nodes: tuple = ()
+    objects: frozenset = frozenset()  # as those of a material
+    reads_layer: bool = False
+
+
+def export_lamp_nodes(thing, messages, images, depsgraph=None, value=None):
+    """Return the LampNodes of a lamp. value: as NodeGraph.lamp_value."""
+    light = thing.data
+    if light.node_tree is None or (bpy.app.version < (5, 2) and not light.use_nodes):
+        return LampNodes()
+    graph = NodeGraph(f"light '{thing.name}'", messages, images, depsgraph, unknown="white")
+    graph.is_of_lamp, graph.lamp_value = True, value
+    emission = emission_of(graph, light.node_tree, "OUTPUT_LIGHT")
+    # Nodes of which no output is left cost nothing.
+    nodes = graph.nodes if isinstance(emission, NodeRef) else ()
+    return LampNodes(emission, nodes, frozenset(graph.objects), graph.reads_layer)
+
+
+def export_light(thing, matrix_world, messages, depsgraph=None, hidden=None, shine=None):
     """Return the light of an object; None, with a message, if it cannot shine. hidden: Ray bits instead of the object's own.
 
-    value: a function that returns the constants of its Attribute nodes, as NodeGraph.lamp_value.
+    shine: the LampNodes; None reads them without images.
     """
     light = thing.data
     who = f"light '{thing.name}'"
@@ -58,16 +81,20 @@ def export_light(thing, matrix_world, messages, depsgraph=None, hidden=None, val
     if text := describe_shear(kind, matrix, depsgraph):
         messages.add(f"{who}: {text}")
     _check_layers(kind, radius, who, messages, depsgraph)
-    # Only constant light is supported: read no images.
-    graph = NodeGraph(who, messages, NoPictures(), depsgraph, unknown="white")
-    graph.lamp_value = value
+    if shine is None:
+        shine = export_lamp_nodes(thing, messages, NoPictures(), depsgraph)
+    varies = isinstance(shine.strength, NodeRef)
+    factor = (1.0, 1.0, 1.0) if varies else shine.strength
+    watts = _watts_to_emission(light, kind, radius, sun_angle, area)
     own = light.lancer
     separate = own.use_separate_colors
     return snapshot.Light(
         name=thing.name,
-        matrix=axes_of(kind, matrix),
+        matrix=axes_of(kind, matrix, varies),
         kind=kind,
-        emission=tuple(c * _watts_to_emission(light, kind, radius, sun_angle, area) for c in _power(light, graph)),
+        emission=tuple(watts * c * f for c, f in zip(_power(light, who, messages), factor, strict=True)),
+        strength=shine.strength if varies else 1.0,
+        nodes=shine.nodes,
         radius=radius if kind in (LightKind.POINT, LightKind.SPOT) else 0.0,
         soft_falloff=getattr(light, "use_soft_falloff", True),
         spot_angle=messages.number(getattr(light, "spot_size", math.pi), who, "spot size", 0.785, 1e-3, math.pi),
@@ -112,16 +139,14 @@ def _casts_shadow(light):
     return getattr(getattr(light, "cycles", None), "cast_shadow", light.use_shadow)
 
 
-def _power(light, graph):
-    """Return watts per channel: the product of energy, colour, temperature, exposure and constant nodes."""
-    who, messages = graph.owner, graph.messages
+def _power(light, who, messages):
+    """Return watts per channel: the product of energy, colour, temperature and exposure."""
     energy = messages.number(light.energy, who, "power", 0.0)
     color = messages.color(light.color, who, "colour", 1.0)
     if getattr(light, "use_temperature", False):
         color = tuple(c * t for c, t in zip(color, light.temperature_color, strict=True))
     energy *= 2.0 ** messages.number(getattr(light, "exposure", 0.0), who, "exposure", 0.0)
-    node_color = _nodes(light, graph)
-    return tuple(energy * c * n for c, n in zip(color, node_color, strict=True))
+    return tuple(energy * c for c in color)
 
 
 def _watts_to_emission(light, kind, radius, sun_angle, area):
@@ -154,21 +179,6 @@ def _area(light, matrix, who, messages):
     shape = AreaShape.ELLIPSE if light.shape in ("DISK", "ELLIPSE") else AreaShape.RECTANGLE
     lengths = np.linalg.norm(matrix[:3, :2], axis=0)
     return shape, (x * float(lengths[0]), y * float(lengths[1]))
-
-
-def _nodes(light, graph):
-    """Return colour times strength of the light's nodes; (1, 1, 1) without nodes, or, with a message, if they vary."""
-    neutral = (1.0, 1.0, 1.0)
-    if light.node_tree is None or (bpy.app.version < (5, 2) and not light.use_nodes):
-        return neutral
-    emission = emission_of(graph, light.node_tree, "OUTPUT_LIGHT")
-    if isinstance(emission, NodeRef):
-        graph.messages.add(
-            f"{graph.owner}: light that varies with place or direction is not supported, its own power is used",
-            "feature:light textures",
-        )
-        return neutral
-    return emission
 
 
 def _check(thing, light, who, messages):

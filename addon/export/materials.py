@@ -69,7 +69,7 @@ class Materials:
         def read(messages, images):
             return _export(material, messages, asker, images, self.depsgraph)
 
-        return self._parts.shader(material, self.messages, read)
+        return self._parts.shader((material,), self.messages, read)
 
     def tell_apart(self, numbers):
         """Whether one of these materials reads an object's colour or random number."""

@@ -71,9 +71,13 @@ class NodeBuilder:
 
     def table(self, values):
         """Return the number of an image with the table, (n, channels) of float32, as its only row. Equal tables share one."""
+        return self.grid(values[None])
+
+    def grid(self, values):
+        """Return the number of an image with these values, (rows, columns, channels) of float32. Equal ones share one."""
         key = values.shape, values.tobytes()
         if key not in self._tables:
-            picture = snapshot.Image(name="table", texels=values[None], alpha=AlphaMode.CHANNEL_PACKED)
+            picture = snapshot.Image(name="table", texels=values, alpha=AlphaMode.CHANNEL_PACKED)
             self._tables[key] = self.images.repeat([picture])
         return self._tables[key]
 

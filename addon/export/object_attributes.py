@@ -6,14 +6,18 @@ import bpy
 import numpy as np
 
 from ..bindings.snapshot import ObjectAttribute
+from .apart import info_of
 from .instance_layers import HAS_INSTANCES, InstanceLayers, Unreadable, makes_instances, steps
+from .particles import PARTICLE, particle_value
 from .properties import object_value, property_value
 
 _OF_OBJECT, _OF_INSTANCER = "object:", "instancer:"
 PREFIXES = {"OBJECT": _OF_OBJECT, "INSTANCER": _OF_INSTANCER}
+# Outputs of the Object Info node, which are constants of a lamp.
+LAMP_FACTS = frozenset({"Location", "Color", "Alpha", "Object Index", "Random"})
 _NONE = (0.0, 0.0, 0.0, 0.0)
 _OF_NO_OBJECT = (0.0, 0.0, 0.0, 1.0)
-_LAMPS_ARE_OBJECTS = bpy.app.version >= (4, 5)
+LAMPS_ARE_OBJECTS = bpy.app.version >= (4, 5)
 _LARGEST = float(np.finfo(np.float32).max)
 
 
@@ -36,10 +40,21 @@ def read_object_attributes(depsgraph, rows, messages, poll_every, poll):
     return tuple(ObjectAttribute(name, values) for name, values in columns.items())
 
 
+def _fact_of_lamp(entry, name):
+    """Return an output of Object Info."""
+    if name == "Location":
+        return (*entry.matrix_world.translation, 1.0)
+    if name == "Object Index":
+        return (float(max(0, entry.object.pass_index)),) * 3 + (1.0,)
+    *color, random = info_of(entry)
+    return (random,) * 3 + (1.0,) if name == "Random" else tuple(color)
+
+
 class AttributeReader:
     """Looks up values by the names of ObjectAttributes."""
 
     def __init__(self, depsgraph, messages):
+        self._depsgraph = depsgraph
         self._layers = InstanceLayers(depsgraph) if HAS_INSTANCES else None
         self._messages = messages
         self._values = {}
@@ -71,13 +86,18 @@ class AttributeReader:
         self._messages.add(text, "feature:attributes of instances")
 
     def of_lamp(self, entry, name):
-        """Return four finite numbers: 0, 0, 0, 1 where lamps have no properties."""
-        if not _LAMPS_ARE_OBJECTS:
-            return _OF_NO_OBJECT
+        """Return four finite numbers: 0, 0, 0, 1 where lamps have no properties. name: also one of LAMP_FACTS."""
+        if not LAMPS_ARE_OBJECTS and name != "Random":
+            return _NONE if name in LAMP_FACTS else _OF_NO_OBJECT
+        if name in LAMP_FACTS:
+            return _fact_of_lamp(entry, name)
         return self.value(entry, name, self.layers(entry, (name,)) if entry.is_instance else ())
 
     def value(self, entry, name, layers):
         """Return four finite numbers; zeros if nothing has that name."""
+        if name.startswith(PARTICLE):
+            scene = self._depsgraph.scene
+            return self._finite(entry, name, particle_value(entry, name, scene.frame_current + scene.frame_subframe))
         of_instancer = name.startswith(_OF_INSTANCER)
         path = name[len(_OF_INSTANCER if of_instancer else _OF_OBJECT) :]
         for layer, row in layers if of_instancer else ():

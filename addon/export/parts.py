@@ -26,8 +26,9 @@ class _Mesh(NamedTuple):
 
 
 class _Shader(NamedTuple):
-    """The export of a material's or a world's nodes."""
+    """The export of the nodes of a material, a world or a lamp."""
 
+    owners: frozenset  # identities of the data whose updates change it
     exported: object
     messages: Messages
     pictures: frozenset  # identities of Blender's images
@@ -107,7 +108,7 @@ class Parts:
         self._meshes = {key: mesh for key, mesh in self._meshes.items() if not mesh.owners & reshaped}
         for key, shader in list(self._shaders.items()):
             by_others = shader.pictures & pictures or shader.exported.objects & moved or changed and shader.exported.reads_layer
-            if key in changed or by_others or shader.with_time and later:
+            if shader.owners & changed or by_others or shader.with_time and later:
                 del self._shaders[key]
         if pictures:
             self.images.forget(pictures, self._numbers())
@@ -127,16 +128,22 @@ class Parts:
         self._used_meshes[key] = found._replace(owners=found.owners | owners)
         return found.data
 
-    def shader(self, block, messages, read):
-        """Return read(messages, images) of a material or world, cached. Its field objects lists the objects it depends on."""
-        key = identity(block)
+    def shader(self, blocks, messages, read, place=()):
+        """Return read(messages, images) of the nodes of blocks, cached. Its field objects lists the objects it depends on.
+
+        place tells results of the same blocks apart.
+        """
+        owners = tuple(map(identity, blocks))
+        key = owners, place
         found = self._shaders.get(key)
         if found is None:
             self.count("shaders")
             asked, told, known = _Asked(self.images), Messages(), len(self.images.list)
             exported = read(told, asked)
             self.count("images", len(self.images.list) - known)
-            found = _Shader(exported, told, frozenset(asked.pictures), frozenset(asked.numbers_used), asked.with_time)
+            found = _Shader(
+                frozenset(owners), exported, told, frozenset(asked.pictures), frozenset(asked.numbers_used), asked.with_time
+            )
         self._used_shaders[key] = found
         messages.merge(found.messages)
         return found.exported

@@ -1,4 +1,4 @@
-"""Procedural textures: noise, Voronoi and gradients. Each reader takes (graph, site, output) and returns a value."""
+"""Procedural textures: noise, Voronoi, gradients. Each reader takes (graph, site, output) and returns a value."""
 
 import bpy
 
@@ -19,7 +19,7 @@ from .textures import legacy_mapping
 
 # Rules of the running Blender's Cycles that differ between versions.
 _SMOOTHEST = 1.0 if bpy.app.version < (4, 1) else float("inf")  # limit of the roughness of noise
-_REPEATS = bpy.app.version >= (4, 2)
+REPEATS = bpy.app.version >= (4, 2)
 _HASHES_INTEGERS = bpy.app.version >= (5, 0)
 _MAPS_LINKS_ONLY = bpy.app.version >= (5, 0)  # the node's own mapping leaves constants as they are
 _IS_BOUNDED = bpy.app.version < (4, 0)
@@ -27,7 +27,8 @@ _CONFUSES_LACUNARITY = (4, 0) <= bpy.app.version < (4, 3)  # a linked Smoothness
 _LEAST = 1e-5  # lower limit of the Musgrave Texture's dimension and lacunarity
 
 
-def _vector(graph, site):
+def mapped_vector(graph, site):
+    """Return a texture's coordinates, Generated without a link, through the mapping that the node itself stores."""
     vector = graph.linked(site, ("Vector",), None)
     if vector is None:
         vector = coordinate(graph, Coordinate.GENERATED)
@@ -36,12 +37,18 @@ def _vector(graph, site):
     return legacy_mapping(graph, site, vector)
 
 
-def _dimensions(name):
+def noise_roughness(graph, site, name):
+    """Return an input that is the roughness of noise, within the limits of the running Blender."""
+    roughness = graph.parameter(site, (name,), 0.5)
+    return roughness if _SMOOTHEST == float("inf") else graph.emit(NodeKind.CLAMP, roughness, 0.0, _SMOOTHEST)
+
+
+def dimensions(name):
     """Return the flag bits of "1D" to "4D"."""
     return int(name[0]) - 1
 
 
-def _packed(graph, site, *wanted):
+def packed(graph, site, *wanted):
     """Combine up to three inputs of a node into one vector. wanted: (name, default if this Blender lacks the input)."""
     return graph.combine(*(graph.parameter(site, (name,), default) for name, default in (*wanted, ("", 0.0), ("", 0.0))[:3]))
 
@@ -49,24 +56,22 @@ def _packed(graph, site, *wanted):
 def _noise(graph, site, output):
     node = site.node
     kind = NoiseKind[getattr(node, "noise_type", "FBM")]
-    flags = _dimensions(node.noise_dimensions)
+    flags = dimensions(node.noise_dimensions)
     if getattr(node, "normalize", True):
         flags |= NoiseFlag.NORMALIZED
-    if _REPEATS:
+    if REPEATS:
         flags |= NoiseFlag.REPEATS
     # With colours the factor is the red channel.
     wants_color = node.outputs["Color"].is_linked
     if wants_color:
         flags |= NoiseFlag.COLOR
-    roughness = graph.parameter(site, ("Roughness",), 0.5)
-    if _SMOOTHEST < float("inf"):
-        roughness = graph.emit(NodeKind.CLAMP, roughness, 0.0, _SMOOTHEST)
+    roughness = noise_roughness(graph, site, "Roughness")
     value = graph.emit(
         NodeKind.NOISE,
-        _vector(graph, site),
-        _packed(graph, site, ("W", 0.0), ("Scale", 5.0), ("Distortion", 0.0)),
+        mapped_vector(graph, site),
+        packed(graph, site, ("W", 0.0), ("Scale", 5.0), ("Distortion", 0.0)),
         graph.combine(graph.parameter(site, ("Detail",), 2.0), roughness, graph.parameter(site, ("Lacunarity",), 2.0)),
-        _packed(graph, site, ("Offset", 0.0), ("Gain", 1.0)),
+        packed(graph, site, ("Offset", 0.0), ("Gain", 1.0)),
         option=kind,
         flags=int(flags),
     )
@@ -81,19 +86,19 @@ def _musgrave(graph, site, output):
     roughness = graph.op(m.POWER, lacunarity, graph.op(m.MULTIPLY, dimension, -1.0))
     return graph.emit(
         NodeKind.NOISE,
-        _vector(graph, site),
-        _packed(graph, site, ("W", 0.0), ("Scale", 5.0)),
+        mapped_vector(graph, site),
+        packed(graph, site, ("W", 0.0), ("Scale", 5.0)),
         graph.combine(graph.parameter(site, ("Detail",), 2.0), roughness, lacunarity),
-        _packed(graph, site, ("Offset", 0.0), ("Gain", 1.0)),
+        packed(graph, site, ("Offset", 0.0), ("Gain", 1.0)),
         option=NoiseKind[node.musgrave_type],
-        flags=_dimensions(node.musgrave_dimensions) | int(NoiseFlag.COUNTED),
+        flags=dimensions(node.musgrave_dimensions) | int(NoiseFlag.COUNTED),
     )
 
 
 def _voronoi(graph, site, output):
     node = site.node
     feature = VoronoiFeature[node.feature]
-    flags = _dimensions(node.voronoi_dimensions) | VoronoiMetric[node.distance] << 2
+    flags = dimensions(node.voronoi_dimensions) | VoronoiMetric[node.distance] << 2
     if getattr(node, "normalize", False):
         flags |= VoronoiFlag.NORMALIZED
     if _HASHES_INTEGERS:
@@ -115,8 +120,8 @@ def _voronoi(graph, site, output):
         lacunarity = float(node.inputs["Lacunarity"].default_value)
     value = graph.emit(
         NodeKind.VORONOI,
-        _vector(graph, site),
-        _packed(graph, site, ("W", 0.0), ("Scale", 5.0), ("Randomness", 1.0)),
+        mapped_vector(graph, site),
+        packed(graph, site, ("W", 0.0), ("Scale", 5.0), ("Randomness", 1.0)),
         graph.combine(graph.parameter(site, ("Detail",), 0.0), graph.parameter(site, ("Roughness",), 0.5), lacunarity),
         graph.combine(smoothness, graph.parameter(site, ("Exponent",), 0.5), 0.0),
         option=feature,
@@ -127,7 +132,7 @@ def _voronoi(graph, site, output):
 
 
 def _gradient(graph, site, output):
-    return graph.emit(NodeKind.GRADIENT, _vector(graph, site), option=GradientKind[site.node.gradient_type])
+    return graph.emit(NodeKind.GRADIENT, mapped_vector(graph, site), option=GradientKind[site.node.gradient_type])
 
 
 READERS = {"TEX_GRADIENT": _gradient, "TEX_MUSGRAVE": _musgrave, "TEX_NOISE": _noise, "TEX_VORONOI": _voronoi}

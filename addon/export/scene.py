@@ -66,7 +66,7 @@ def export_scene(depsgraph, options=None, poll=None):
     if parts is None or sky is None:
         exported = export_world(sky, images, depsgraph, messages)
     else:
-        exported = parts.shader(sky, messages, lambda told, pictures: export_world(sky, pictures, depsgraph, told))
+        exported = parts.shader((sky,), messages, lambda told, pictures: export_world(sky, pictures, depsgraph, told))
     table, meshes = instances.to_table(obey), instances.meshes
     # Only final renders of Cycles transform meshes to the world, which changes normals.
     if parts is None:

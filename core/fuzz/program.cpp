@@ -163,7 +163,7 @@ private:
   void add_light() {
     Filled *filled = nullptr;
     const lancer_scene scene = open(filled);
-    const lancer_light light = records_.light();
+    const lancer_light light = records_.light(*filled);
     if (filled->lights < kMostThings && LANCER_CHECKED(lancer_scene_add_light(scene, &light)) == LANCER_OK)
       ++filled->lights;
   }

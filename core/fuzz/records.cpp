@@ -121,7 +121,7 @@ lancer_image Records::image() {
   return image;
 }
 
-lancer_light Records::light() {
+lancer_light Records::light(const Filled &filled) {
   lancer_light light = {};
   light.name = name();
   matrix(light.matrix, 3.0);
@@ -146,6 +146,9 @@ lancer_light Records::light() {
   light.no_shadow = flag();
   light.falloff = bytes_.choice(6);
   light.falloff_radius = bytes_.number(10.0f, 0.0f, 20.0f);
+  light.node_count = nodes(filled, light.nodes);
+  light.strength = parameter(1.0f, -1.0f, 2.0f);
+  node_count_ = 0;
   return light;
 }
 

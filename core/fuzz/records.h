@@ -22,7 +22,7 @@ public:
   lancer_mesh mesh();
   lancer_image image();
   lancer_material material(const Filled &filled);
-  lancer_light light();
+  lancer_light light(const Filled &filled);
   lancer_world world(const Filled &filled);
   lancer_camera camera();
   lancer_settings settings();

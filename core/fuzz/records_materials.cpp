@@ -48,16 +48,21 @@ lancer_node Records::node(const Filled &filled, uint32_t at) {
   else
     node.option %= node.kind == LANCER_NODE_NORMAL_MAP || node.kind == LANCER_NODE_NOISE || node.kind == LANCER_NODE_VORONOI ? 6
                    : node.kind == LANCER_NODE_GRADIENT                                                                       ? 8
-                   : node.kind == LANCER_NODE_SEPARATE                                                                       ? 3
-                                                       : 4;
-  const bool picture = node.kind == LANCER_NODE_IMAGE || node.kind == LANCER_NODE_ENVIRONMENT;
+                   : node.kind == LANCER_NODE_SEPARATE || node.kind == LANCER_NODE_WAVE                                      ? 3
+                   : node.kind == LANCER_NODE_MAGIC                                           ? 12
+                   : node.kind == LANCER_NODE_GABOR || node.kind == LANCER_NODE_RADIAL_TILING ? 2
+                                                                                              : 4;
+  const bool picture = node.kind == LANCER_NODE_IMAGE || node.kind == LANCER_NODE_ENVIRONMENT || node.kind == LANCER_NODE_IES;
   if (picture) {
     // In separate statements: the compiler chooses the order of operands.
     node.flags = bytes_.choice(4);
     node.flags |= bytes_.choice(3) << 4;
     node.flags |= flag() << 8;
   } else if (bytes_.rarely(100))
-    node.flags = bytes_.below(node.kind == LANCER_NODE_BUMP ? 8 : node.kind == LANCER_NODE_MIX ? 4 : 2);
+    node.flags = bytes_.below(node.kind == LANCER_NODE_WAVE || node.kind == LANCER_NODE_VECTOR_TRANSFORM ? 16
+                              : node.kind == LANCER_NODE_BUMP                                            ? 8
+                              : node.kind == LANCER_NODE_MIX                                             ? 4
+                                                                                                         : 2);
   else if (bytes_.rarely(2))
     node.flags = ~0u;
   if (picture && filled.images) {

@@ -32,7 +32,7 @@ extern "C" {
 #endif
 
 /* Incremented with each change of a struct or a call of this header. */
-#define LANCER_ABI_VERSION 10u
+#define LANCER_ABI_VERSION 11u
 
 /* Limits: nodes of a material or world; recursion of CLASSIC, in which glass doubles the rays with every depth. */
 #define LANCER_MOST_NODES 4096u
@@ -272,8 +272,45 @@ enum lancer_node_kind {
   LANCER_NODE_OBJECT_INFO = 26, /* of the object hit; option LANCER_OBJECT_*; name: of ATTRIBUTE */
   LANCER_NODE_LIGHT_PATH = 27,  /* of the ray that has hit the surface or reached the world; option LANCER_PATH_* */
   LANCER_NODE_COLOR_MODEL = 28, /* inputs: colour; option LANCER_COLOR_* */
-  LANCER_NODE_COUNT = 29
+  /* inputs: vector; scale, distortion, phase; detail, scale and roughness of the noise that distorts. option
+   * LANCER_PROFILE_*; flags: LANCER_WAVE_* in bits 0-2, and LANCER_NOISE_REPEATS */
+  LANCER_NODE_WAVE = 29,
+  /* inputs: vector; scale, distortion. option: depth, 0 ... 10; flag 1: scale the vector, else the argument of the waves */
+  LANCER_NODE_MAGIC = 30,
+  LANCER_NODE_CHECKER = 31, /* inputs: vector, scale. Returns 1 in cells of the first colour, 0 in others */
+  /* inputs: vector; scale, mortar size, mortar smooth; bias, brick width, row height; offset, squash; of how many rows one is
+   * moved, and squashed. Returns the share of the second colour, and the share of mortar */
+  LANCER_NODE_BRICK = 32,
+  LANCER_NODE_WHITE_NOISE = 33, /* inputs: vector, w. flags: dimensions minus 1 in bits 0-1, LANCER_NOISE_COLOR */
+  /* inputs: vector; scale, frequency, anisotropy; orientation: an angle, or with option 1 a direction. option 0 in the plane,
+   * 1 in space. Returns value, phase, intensity */
+  LANCER_NODE_GABOR = 34,
+  /* inputs: vector; sides, roundness. option 0: segment coordinates x and y, segment width, segment rotation; 1: the segment's
+   * number. flag 1: normalise */
+  LANCER_NODE_RADIAL_TILING = 35,
+  LANCER_NODE_WIREFRAME = 36, /* inputs: size; flag 1: in pixels. Returns 1 near an edge of the triangle, else 0 */
+  /* inputs: vector. option as TRANSFORM; flags: LANCER_SPACE_* of the vector in bits 0-1, of the result in bits 2-3 */
+  LANCER_NODE_VECTOR_TRANSFORM = 37,
+  /* inputs: direction, strength. image: rows of floating-point texels, one number each, at least 5 x 5: in the first row, from
+   * the third texel to the last but one, ascending angles from -z, in the first column those around z, from -y on, both in
+   * radians; from the second row and texel on the intensities there, with one more row and column on each side, by which the
+   * cubic interpolation of Catmull and Rom is continued. Returns strength times the intensity; outside the angles 0 */
+  LANCER_NODE_IES = 38,
+  LANCER_NODE_COUNT = 39
 };
+enum lancer_profile { LANCER_PROFILE_SIN = 0, LANCER_PROFILE_SAW, LANCER_PROFILE_TRI, LANCER_PROFILE_COUNT };
+/* Bands across an axis, or rings around it. */
+enum lancer_wave {
+  LANCER_WAVE_BANDS_X = 0,
+  LANCER_WAVE_BANDS_Y,
+  LANCER_WAVE_BANDS_Z,
+  LANCER_WAVE_BANDS_DIAGONAL,
+  LANCER_WAVE_RINGS_X,
+  LANCER_WAVE_RINGS_Y,
+  LANCER_WAVE_RINGS_Z,
+  LANCER_WAVE_RINGS_SPHERICAL
+};
+enum lancer_space { LANCER_SPACE_WORLD = 0, LANCER_SPACE_OBJECT, LANCER_SPACE_CAMERA };
 enum lancer_attribute_flag {
   LANCER_ATTRIBUTE_OPAQUE = 1, /* alpha is 1 on a mesh without the attribute; else 0 */
   LANCER_ATTRIBUTE_FIRST = 2,  /* of two channels the first is in x, y, z, for a node that reads one number */
@@ -375,7 +412,9 @@ enum lancer_coordinate {
   LANCER_COORDINATE_INCOMING = 10,      /* towards the viewer */
   LANCER_COORDINATE_BACKFACING = 11,    /* 1 if seen from inside */
   LANCER_COORDINATE_PARAMETRIC = 12,    /* barycentric weights of vertices 0 and 1, as in Blender */
-  LANCER_COORDINATE_COUNT = 13
+  LANCER_COORDINATE_FROM_CAMERA = 13,   /* as CAMERA, but in the height of a bump that of the bump itself, and in the world
+                                           that of the direction taken as a point */
+  LANCER_COORDINATE_COUNT = 14
 };
 enum lancer_projection { LANCER_PROJECT_FLAT = 0, LANCER_PROJECT_BOX = 1, LANCER_PROJECT_SPHERE = 2, LANCER_PROJECT_TUBE = 3 };
 enum lancer_extension { LANCER_EXTEND_REPEAT = 0, LANCER_EXTEND_EXTEND = 1, LANCER_EXTEND_CLIP = 2, LANCER_EXTEND_MIRROR = 3 };
@@ -654,9 +693,18 @@ enum lancer_falloff {
 /* A light emits along its local -z. Only the directions of the matrix's columns are used, not their lengths; sizes are world
  * lengths in the fields below. Columns that are not orthogonal shear the sides of an AREA, which then emits along the normal of
  * its plane, and the cone of a SPOT; other lights keep z. In PATH a light is visible to camera, mirror and glass rays unless it
- * is hidden from them. */
+ * is hidden from them.
+ *
+ * The nodes of a light give the factor of its emission at a point of the light, seen from a place that it lights. Their
+ * position is that point, of a SUN the direction that the light travels in, as a point; their normals are those of an area or a
+ * ball, otherwise the direction towards the lit place, as INCOMING. OBJECT and NORMAL are in the frame of matrix. PARAMETRIC is
+ * the place in the light's own texture coordinates: 0 ... 1 over the sides of an AREA and over the disk of a SUN, longitude and
+ * latitude of a POINT, and the plane on which the cone of a SPOT covers 0 ... 1. Light Path is that of a light sample. */
 typedef struct lancer_light {
   const char *name;
+  const lancer_node *nodes;
+  uint32_t node_count;
+  lancer_parameter strength; /* [vector 1] factor of emission, of a light that has nodes */
   double matrix[12];
   uint32_t kind;         /* LANCER_POINT ... */
   float emission[3];     /* POINT, SPOT: radiant intensity, W/sr. SUN: irradiance at normal incidence, W/m^2. AREA: radiance.

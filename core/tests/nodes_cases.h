@@ -35,10 +35,11 @@ inline glm::vec3 any_direction(Random &random) {
   return glm::dot(d, d) > 0.0f ? glm::normalize(d) : glm::vec3(0, 0, 1);
 }
 
-inline constexpr uint32_t kFreeImages = 40, kTiles = kFreeImages, kSides = kTiles + 3, kTables = kSides + 6;
+inline constexpr uint32_t kFreeImages = 40, kTiles = kFreeImages, kSides = kTiles + 3, kTables = kSides + 6,
+                          kAngles = kTables + 3;
 
 // A world of five instances (two meshes, three exact surfaces) and images of all forms: kFreeImages of any form, then 3 tiles,
-// then the 6 sides of a cube, then tables of curves of 1, 3 and 4 channels.
+// then the 6 sides of a cube, then tables of curves of 1, 3 and 4 channels, then the light of a luminaire.
 class NodeWorld {
 public:
   Description description;
@@ -77,6 +78,7 @@ public:
         x = uniform_number(random, -1.0f, 2.0f);
       add_image(description, image_of(values, 7, 1, channels));
     }
+    add_luminaire(random);
     camera.to_world = description.geometry.instances[2].to_world;
   }
 
@@ -133,6 +135,19 @@ private:
     add_mesh(description, mesh);
   }
 
+  // Angles from 0 to pi and around, with intensities between and beside them.
+  void add_luminaire(Random &random) {
+    const uint32_t width = 8, height = 7;
+    std::vector<float> texels(size_t(width) * height);
+    for (float &x : texels)
+      x = uniform_number(random, 0.0f, 1.0f);
+    for (uint32_t i = 2; i + 1 < width; ++i)
+      texels[i] = 3.14159265f * float(i - 2) / float(width - 4);
+    for (uint32_t i = 2; i + 1 < height; ++i)
+      texels[size_t(i) * width] = 6.2831853f * float(i - 2) / float(height - 4);
+    add_image(description, image_of(texels, width, height, 1));
+  }
+
   void add_any_image(Random &random, uint32_t tile) {
     const uint32_t width = 1 + random() % 9, height = 1 + random() % 9, all_channels[] = {1, 3, 4},
                    channels = all_channels[random() % 3], kind = random() % 3;
@@ -180,6 +195,10 @@ inline NodeCase make_case(Random &random, uint32_t kind, uint32_t option, uint32
     const bool cube = environment && option == LANCER_ENVIRONMENT_CUBE, tiles = !environment && random() % 4 == 0;
     last.image = cube ? kSides : tiles ? kTiles : random() % kFreeImages;
     last.image_count = cube ? 6 : tiles ? 3 : random() % 16 ? 1 : 0;
+  }
+  if (kind == LANCER_NODE_IES) {
+    last.image = kAngles;
+    last.image_count = 1;
   }
   if (kind == LANCER_NODE_CURVES) {
     last.image = kTables + (option == 0 ? random() % 2 : random() % 3);
@@ -259,6 +278,23 @@ inline std::vector<NodeCase> all_cases(Random &random) {
     for (uint32_t flags = random() % 7; flags < 512; flags += 7)
       cases.push_back(make_case(random, LANCER_NODE_VORONOI, option, flags));
   options(LANCER_NODE_GRADIENT, LANCER_GRADIENT_COUNT);
+  options(LANCER_NODE_WAVE, LANCER_PROFILE_COUNT, 16);
+  options(LANCER_NODE_MAGIC, 11, 2);
+  for (int i = 0; i < 4; ++i) {
+    options(LANCER_NODE_CHECKER, 1);
+    options(LANCER_NODE_BRICK, 1);
+    options(LANCER_NODE_GABOR, 2);
+    options(LANCER_NODE_RADIAL_TILING, 2, 2);
+    options(LANCER_NODE_WIREFRAME, 1, 2);
+    options(LANCER_NODE_IES, 1);
+  }
+  for (uint32_t flags = 0; flags < 4; ++flags)
+    for (const uint32_t color : {0u, uint32_t(LANCER_NOISE_COLOR)})
+      cases.push_back(make_case(random, LANCER_NODE_WHITE_NOISE, 0, flags | color));
+  for (uint32_t from = 0; from < 3; ++from)
+    for (uint32_t to = 0; to < 3; ++to)
+      for (uint32_t option = 0; option < 3; ++option)
+        cases.push_back(make_case(random, LANCER_NODE_VECTOR_TRANSFORM, option, from | to << 2));
   for (int i = 0; i < 3; ++i)
     options(LANCER_NODE_CURVES, 2, 4);
   options(LANCER_NODE_OBJECT_INFO, LANCER_OBJECT_COUNT);

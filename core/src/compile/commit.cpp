@@ -88,11 +88,16 @@ PlaneRules plane_rules(const Scene &scene) {
   return rules;
 }
 
-LightSet make_lights(const Scene &scene, const Description &description, const BuildContext &context) {
+LightSet make_lights(Scene &scene, Description &description, const BuildContext &context) {
   EmissionAt emission(scene.node_scene(nullptr), scene.materials);
   std::vector<Light> lights;
-  for (const LightDescription &light : description.lights)
+  for (LightDescription &light : description.lights) {
     lights.push_back(place_light(light, scene.normalisation));
+    add_lamp_shader(light, lights.back(), scene.normalisation, scene.lamp_shaders);
+  }
+  for (Light &light : lights)
+    if (light.shader != kNone)
+      light.level = mean_strength(light, scene.lamp_shaders, scene.node_scene(nullptr));
   return LightSet(std::move(lights), make_emitters(scene.geometry, scene.slots, scene.materials, emission, context),
                   scene.geometry.instances.size(),
                   Environment(scene.world, scene.images, scene.normalisation, context, scene.features & kFeatureGlass),

@@ -106,6 +106,8 @@ Light place_light(const LightDescription &from, const Normalisation &normalisati
   const glm::dmat3 columns = unit_columns(from.to_world.linear);
   const bool sheared = is_sheared(columns);
   light.emission = glm::dvec3(from.emission);
+  if (!from.strength.varies())
+    light.emission *= glm::dvec3(from.strength.value);
   // Irradiance is intensity over distance squared: lengths scale, so intensity scales with their square.
   if (from.kind == LightKind::Point || from.kind == LightKind::Spot)
     light.emission *= scale * scale;

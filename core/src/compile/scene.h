@@ -4,6 +4,7 @@
 #include "accel/accelerator.h"
 #include "compile/cutout.h"
 #include "compile/features.h"
+#include "lights/lamp_shader.h"
 #include "lights/light_set.h"
 #include "scene/affine.h"
 #include "scene/description.h"
@@ -21,6 +22,7 @@ struct Scene {
   std::vector<Image> images;
   World world;
   LightSet lights;
+  LampShaders lamp_shaders; // of lights.lamps()
   Normalisation normalisation;
   uint32_t features = 0; // bits of features.h
   uint32_t shapes = 0;   // of lobes, as in Features

@@ -4,6 +4,7 @@
 #include "accel/accelerator.h"
 #include "bsdf/material_lobes.h"
 #include "lights/emission.h"
+#include "lights/lamp_shader.h"
 #include "lights/light.h"
 #include "lights/light_bounds.h"
 #include "scene/affine.h"
@@ -39,6 +40,8 @@ void flatten(Description &description, const BuildContext &context);
 
 // Returns a described light in the normalised world.
 Light place_light(const LightDescription &from, const Normalisation &normalisation);
+// Moves the nodes of a light, if it has any, to the shaders.
+void add_lamp_shader(LightDescription &from, Light &light, const Normalisation &normalisation, LampShaders &shaders);
 
 // Returns one emitter for each instance that can be sampled. Instances of one mesh with the same materials share the tree of
 // its faces.

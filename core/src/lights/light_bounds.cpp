@@ -141,7 +141,7 @@ DescribedLight describe(const Light &light, uint32_t number) {
   known.centre = glm::clamp(light.position, -kFarthest, kFarthest);
   known.axis = glm::vec3(-light.z);
   bounds.cone = {-light.z, 0.0, 0.5 * kPi};
-  bounds.energy = level(light.emission);
+  bounds.energy = level(light.emission) * light.level;
   switch (light.kind) {
   case LightKind::Point:
   case LightKind::Spot:

@@ -107,6 +107,16 @@ template <class F> Vector3<F> in_camera(const Site<F> &site) {
   });
 }
 
+// Returns the position in the camera's frame; a direction of the world is taken as a point of the user's world.
+template <class F> Vector3<F> from_camera_place(const Site<F> &site) {
+  const Camera *camera = site.scene.camera;
+  if (!camera)
+    return narrow(user_position(site));
+  const double scale = site.user_scale();
+  return ask_camera<F>(site.surface ? site.p : from_user_world(site, site.p),
+                       [&](int, const glm::dvec3 &p) { return glm::vec3(glm::dvec3(camera->to_camera(p)) / scale); });
+}
+
 // Returns the point that represents a lane in the picture.
 template <class F> glm::dvec3 seen_at(const Site<F> &site, int i, const glm::dvec3 &p) {
   const Camera &camera = *site.scene.camera;
@@ -146,6 +156,8 @@ template <class F> Value<F> coordinate_node(const Node &node, const Site<F> &sit
     return solid(narrow(node.flags & 1 ? rows_times(node.matrix, user_position(site), 1.0) : object_position(site)));
   case Coordinate::Camera:
     return solid(in_camera(site));
+  case Coordinate::FromCamera:
+    return solid(from_camera_place(site.standing()));
   case Coordinate::Window:
     return solid(window(site));
   case Coordinate::Reflection:

@@ -5,6 +5,7 @@
 #include "nodes/bump_node.h"
 #include "nodes/color_nodes.h"
 #include "nodes/image_nodes.h"
+#include "nodes/place_nodes.h"
 #include "nodes/texture_nodes.h"
 
 #include <bit>
@@ -69,6 +70,26 @@ template <class F> Value<F> node_value(const Program &program, const Inputs<F> &
     return voronoi_node(in);
   case NodeKind::Gradient:
     return gradient_node(in);
+  case NodeKind::Wave:
+    return wave_node(in);
+  case NodeKind::Magic:
+    return magic_node(in);
+  case NodeKind::Checker:
+    return checker_node(in);
+  case NodeKind::Brick:
+    return brick_node(in);
+  case NodeKind::WhiteNoise:
+    return white_noise_node(in);
+  case NodeKind::Gabor:
+    return gabor_node(in);
+  case NodeKind::RadialTiling:
+    return radial_tiling_node(in);
+  case NodeKind::Wireframe:
+    return wireframe_node(in, site);
+  case NodeKind::VectorTransform:
+    return vector_transform_node(in, site);
+  case NodeKind::Ies:
+    return ies_node(in, site);
   case NodeKind::Curves:
     return curves_node(in, site);
   case NodeKind::ObjectInfo:

@@ -148,13 +148,20 @@ template <class F> LANCER_LANE Vector3<F> normal_to_object(const Site<F> &site, 
 template <class F> LANCER_LANE Vector3<F> normal_to_world(const Site<F> &site, const Vector3<F> &n) {
   return carried_normal(site, &Instance::to_object, n);
 }
-// Converts a point of the normalised world to the user's.
+// Converts a point of the normalised world to the user's, or the reverse.
 template <class F> LANCER_LANE Vector3<DoubleOf<F>> in_user_world(const Site<F> &site, const Vector3<DoubleOf<F>> &p) {
   using D = DoubleOf<F>;
   if (!site.scene.normalisation)
     return p;
   const glm::dvec3 &c = site.scene.normalisation->centre;
   return p / D(site.scene.normalisation->scale) + Vector3<D>(D(c.x), D(c.y), D(c.z));
+}
+template <class F> LANCER_LANE Vector3<DoubleOf<F>> from_user_world(const Site<F> &site, const Vector3<DoubleOf<F>> &p) {
+  using D = DoubleOf<F>;
+  if (!site.scene.normalisation)
+    return p;
+  const glm::dvec3 &c = site.scene.normalisation->centre;
+  return (p - Vector3<D>(D(c.x), D(c.y), D(c.z))) * D(site.scene.normalisation->scale);
 }
 // Returns the site's position in the user's world; for the world, the direction.
 template <class F> LANCER_LANE Vector3<DoubleOf<F>> user_position(const Site<F> &site) {

@@ -2,7 +2,11 @@
 #pragma once
 
 #include "nodes/curves.h"
+#include "nodes/gabor.h"
+#include "nodes/ies.h"
 #include "nodes/noise.h"
+#include "nodes/patterns.h"
+#include "nodes/radial_tiling.h"
 #include "nodes/site.h"
 #include "nodes/voronoi.h"
 #include "sampling/elementary.h"
@@ -54,6 +58,43 @@ template <class F> Value<F> voronoi_node(const Inputs<F> &in) {
 }
 
 template <class F> Value<F> gradient_node(const Inputs<F> &in) { return scalar(gradient_texture<F>(in.node.option, in[0])); }
+
+template <class F> Value<F> wave_node(const Inputs<F> &in) {
+  return scalar(wave_texture<F>(in.node.option, in.node.flags, in[0], in[1], in[2]));
+}
+
+template <class F> Value<F> magic_node(const Inputs<F> &in) {
+  return solid(magic_texture<F>(in.node.option, in.node.flags & 1, in[0], in[1]));
+}
+
+template <class F> Value<F> checker_node(const Inputs<F> &in) { return scalar(checker_texture<F>(in[0], in.scalar(1))); }
+
+template <class F> Value<F> brick_node(const Inputs<F> &in) {
+  const BrickShares<F> shares = brick_texture<F>(in[0], in[1], in[2], in[3], in[4]);
+  return solid(Vector3<F>(shares.second, shares.mortar, F(0.0f)));
+}
+
+template <class F> Value<F> white_noise_node(const Inputs<F> &in) {
+  return solid(white_noise_texture<F>(in.node.flags, in[0], in.scalar(1)));
+}
+
+template <class F> Value<F> gabor_node(const Inputs<F> &in) {
+  return solid(gabor_texture<F>(in.node.option == 1, in[0], in[1], in.node.option == 1 ? unit_or_zero(in[2]) : in[2]));
+}
+
+template <class F> Value<F> radial_tiling_node(const Inputs<F> &in) {
+  const Vector3<F> p = in[0], shape = in[1];
+  if (in.node.option == 1)
+    return scalar(radial_segment<F>(p.x, p.y, shape.x));
+  const Tile<F> tile = radial_tile<F>(p.x, p.y, shape.x, shape.y, in.node.flags & 1);
+  return {{tile.along, tile.distance, tile.width}, tile.turn};
+}
+
+template <class F> Value<F> ies_node(const Inputs<F> &in, const Site<F> &site) {
+  const Image &image = (*site.scene.images)[in.node.image];
+  const IesTable table{reinterpret_cast<const float *>(image.texels.get()), image.width, image.height};
+  return scalar(F(in.scalar(1) * ies_texture<F>(table, in[0])));
+}
 
 template <class F> Value<F> curves_node(const Inputs<F> &in, const Site<F> &site) {
   const Image &image = (*site.scene.images)[in.node.image];

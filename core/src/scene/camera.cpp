@@ -193,6 +193,12 @@ glm::vec3 Camera::direction_to_camera(const glm::dvec3 &d) const {
   return kind == CameraKind::MirrorBall ? glm::vec3(local.x, local.z, local.y) : glm::vec3(-local.z, -local.x, local.y);
 }
 
+glm::dvec3 Camera::direction_from_camera(const glm::dvec3 &d) const {
+  if (!is_panorama())
+    return to_world.linear * glm::dvec3(d.x, d.y, -d.z);
+  return to_world.linear * (kind == CameraKind::MirrorBall ? glm::dvec3(d.x, d.z, d.y) : glm::dvec3(-d.y, d.z, -d.x));
+}
+
 glm::vec3 Camera::to_camera(const glm::dvec3 &p) const { return direction_to_camera(p - to_world.translation); }
 
 glm::vec3 Camera::to_window(const glm::dvec3 &p) const {
@@ -205,15 +211,35 @@ glm::vec3 Camera::to_window(const glm::dvec3 &p) const {
   return glm::vec3(glm::dvec3((place.x - left) / (right - left), (place.y - bottom) / (top - bottom), 0.0));
 }
 
+namespace {
+
+// Returns the mean change of a ray's unit direction over a pixel to its right and one above it.
+double change_over_pixel(const glm::dvec3 &here, const glm::dvec3 &right, const glm::dvec3 &above) {
+  const glm::dvec3 d = glm::normalize(here);
+  return 0.5 * (glm::length(glm::normalize(right) - d) + glm::length(glm::normalize(above) - d));
+}
+
+} // namespace
+
 PixelCone::PixelCone(const Camera &camera) {
   // Compare the rays through the middle of the picture and through the neighbouring pixels.
   const glm::dvec2 middle(0.5 * camera.width, 0.5 * camera.height);
   const Ray here = camera.ray(middle, glm::dvec2(0.0));
   const Ray right = camera.ray(middle + glm::dvec2(1.0, 0.0), glm::dvec2(0.0));
   const Ray above = camera.ray(middle + glm::dvec2(0.0, 1.0), glm::dvec2(0.0));
-  const glm::dvec3 d = glm::normalize(here.d);
   base = 0.5 * (glm::length(right.o - here.o) + glm::length(above.o - here.o));
-  spread = 0.5 * (glm::length(glm::normalize(right.d) - d) + glm::length(glm::normalize(above.d) - d));
+  spread = change_over_pixel(here.d, right.d, above.d);
+}
+
+double relative_spread(const Camera &camera, const glm::dvec3 &d) {
+  const glm::dvec3 local = glm::transpose(camera.to_world.linear) * d;
+  if (camera.kind != CameraKind::Perspective || !(local.z < 0.0))
+    return 1.0;
+  const glm::dvec3 right((camera.right - camera.left) / camera.width, 0.0, 0.0);
+  const glm::dvec3 above(0.0, (camera.top - camera.bottom) / camera.height, 0.0);
+  const glm::dvec3 middle(0.5 * (camera.left + camera.right), 0.5 * (camera.bottom + camera.top), -1.0);
+  const auto spread = [&](const glm::dvec3 &at) { return change_over_pixel(at, at + right, at + above); };
+  return spread(local / -local.z) / spread(middle);
 }
 
 } // namespace lancer

@@ -50,18 +50,22 @@ struct Camera {
 
   // Returns the depth of a world point as in the depth pass: along the axis, or the distance for panoramas.
   double depth(const glm::dvec3 &p) const;
-  // Transforms a point or a direction to the camera's frame with z forwards, as nodes use it.
+  // Transforms a point or a direction to the camera's frame with z forwards, as nodes use it; and a direction from it.
   glm::vec3 to_camera(const glm::dvec3 &p) const;
   glm::vec3 direction_to_camera(const glm::dvec3 &d) const;
+  glm::dvec3 direction_from_camera(const glm::dvec3 &d) const;
   // Returns the place of a point in the picture: (0, 0) the lower left corner, (1, 1) the upper right; z is 0.
   glm::vec3 to_window(const glm::dvec3 &p) const;
 };
 
-// Radius of a pixel's footprint: base at distance 0, plus spread per unit of distance; normalised units.
+// Radius of the footprint of a pixel in the middle of the picture: base at distance 0, plus spread per unit of distance;
+// normalised units.
 struct PixelCone {
   explicit PixelCone(const Camera &camera);
   double base = 0.0, spread = 0.0;
 };
+// Returns the spread of a perspective camera's pixel in direction d, relative to that in the middle; 1 for other cameras.
+double relative_spread(const Camera &camera, const glm::dvec3 &d);
 
 // Panoramic projections between a place in the whole panorama, 0 ... 1, and a direction. Local frame: -z forwards, y up.
 

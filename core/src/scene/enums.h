@@ -15,7 +15,8 @@ struct NodeKind { enum : uint32_t {
   Coordinate = 0, Attribute = 1, Image = 2, Environment = 3, Alpha = 4, Mapping = 5, Transform = 6, Math = 7, VectorMath = 8,
   Mix = 9, Separate = 10, Combine = 11, Grey = 12, Fresnel = 13, LayerWeight = 14, NormalMap = 15, Bump = 16, Tangent = 17,
   Clamp = 18, Displacement = 19, Gamma = 20, Invert = 21, Noise = 22, Voronoi = 23, Gradient = 24, Curves = 25, ObjectInfo = 26,
-  LightPath = 27, ColorModel = 28
+  LightPath = 27, ColorModel = 28, Wave = 29, Magic = 30, Checker = 31, Brick = 32, WhiteNoise = 33, Gabor = 34, RadialTiling =
+  35, Wireframe = 36, VectorTransform = 37, Ies = 38
 }; };
 struct AttributeFlag { enum : uint32_t {
   Opaque = 1, First = 2, Still = 4
@@ -48,9 +49,18 @@ struct VoronoiFlag { enum : uint32_t {
 struct GradientKind { enum : uint32_t {
   Linear = 0, Quadratic = 1, Easing = 2, Diagonal = 3, Spherical = 4, QuadraticSphere = 5, Radial = 6
 }; };
+struct Profile { enum : uint32_t {
+  Sin = 0, Saw = 1, Tri = 2
+}; };
+struct Wave { enum : uint32_t {
+  BandsX = 0, BandsY = 1, BandsZ = 2, BandsDiagonal = 3, RingsX = 4, RingsY = 5, RingsZ = 6, RingsSpherical = 7
+}; };
+struct Space { enum : uint32_t {
+  World = 0, Object = 1, Camera = 2
+}; };
 struct Coordinate { enum : uint32_t {
   Generated = 0, Normal = 1, Uv = 2, Object = 3, Camera = 4, Window = 5, Reflection = 6, Position = 7, ShadingNormal = 8,
-  TrueNormal = 9, Incoming = 10, Backfacing = 11, Parametric = 12
+  TrueNormal = 9, Incoming = 10, Backfacing = 11, Parametric = 12, FromCamera = 13
 }; };
 struct ImageProjection { enum : uint32_t {
   Flat = 0, Box = 1, Sphere = 2, Tube = 3

@@ -54,6 +54,23 @@ private:
 
 } // namespace
 
+namespace {
+
+// Returns the factor of a lamp's emission, which may be negative but must be finite.
+Parameter read_strength(const std::string &object, const lancer_parameter &source, const Program &program) {
+  check_reference(object, "strength", source, program);
+  Parameter strength;
+  strength.node = source.node;
+  for (int i = 0; i < 3; ++i) {
+    if (source.node < 0 && !std::isfinite(source.value[i]))
+      bad_argument(object + ": strength " + to_text(source.value[i]) + " must be finite");
+    strength.value[i] = source.value[i];
+  }
+  return strength;
+}
+
+} // namespace
+
 void add_light(Description &description, const lancer_light &source) {
   const std::string object = label("light", source.name, description.lights.size());
   if (source.kind > LANCER_AREA)
@@ -67,6 +84,9 @@ void add_light(Description &description, const lancer_light &source) {
   LightDescription light;
   light.name = source.name ? source.name : "";
   light.kind = static_cast<LightKind>(source.kind);
+  light.program = read_program(description, object, source.nodes, source.node_count);
+  if (source.node_count)
+    light.strength = read_strength(object, source.strength, light.program);
   light.to_world = Affine::from_rows(source.matrix);
   if (!light.to_world.finite()) {
     description.messages.add(object, "its matrix is not finite; it gives no light");

@@ -70,6 +70,24 @@ Shape shape_of(const lancer_node &node) {
     return {1, LANCER_GRADIENT_COUNT, false};
   case LANCER_NODE_CURVES:
     return {2, 2, true};
+  case LANCER_NODE_WAVE:
+    return {3, LANCER_PROFILE_COUNT, false};
+  case LANCER_NODE_MAGIC:
+    return {2, 11, false};
+  case LANCER_NODE_CHECKER:
+    return {2, 0, false};
+  case LANCER_NODE_BRICK:
+    return {5, 0, false};
+  case LANCER_NODE_GABOR:
+    return {3, 2, false};
+  case LANCER_NODE_RADIAL_TILING:
+    return {2, 2, false};
+  case LANCER_NODE_WIREFRAME:
+    return {1, 0, false};
+  case LANCER_NODE_IES:
+    return {2, 0, false};
+  case LANCER_NODE_VECTOR_TRANSFORM:
+    return {1, 3, false};
   case LANCER_NODE_OBJECT_INFO:
     return {0, LANCER_OBJECT_COUNT, false};
   case LANCER_NODE_LIGHT_PATH:
@@ -85,6 +103,9 @@ uint32_t flags_of(uint32_t kind) {
   case LANCER_NODE_COORDINATE:
   case LANCER_NODE_MATH:
   case LANCER_NODE_NORMAL_MAP:
+  case LANCER_NODE_MAGIC:
+  case LANCER_NODE_RADIAL_TILING:
+  case LANCER_NODE_WIREFRAME:
     return 1;
   case LANCER_NODE_ATTRIBUTE:
     return LANCER_ATTRIBUTE_OPAQUE | LANCER_ATTRIBUTE_FIRST | LANCER_ATTRIBUTE_STILL;
@@ -103,6 +124,12 @@ uint32_t flags_of(uint32_t kind) {
            LANCER_VORONOI_BOUNDED;
   case LANCER_NODE_CURVES:
     return 1 | 2;
+  case LANCER_NODE_WAVE:
+    return 7 | LANCER_NOISE_REPEATS;
+  case LANCER_NODE_WHITE_NOISE:
+    return 3 | LANCER_NOISE_COLOR;
+  case LANCER_NODE_VECTOR_TRANSFORM:
+    return 3 | 3 << 2;
   default:
     return 0;
   }
@@ -120,6 +147,8 @@ public:
     if (shape.options && given.option >= shape.options)
       bad_argument(where_ + "option " + std::to_string(given.option) + " >= " + std::to_string(shape.options) + " options");
     check_flags(where_, given.flags, flags_of(given.kind));
+    if (given.kind == LANCER_NODE_VECTOR_TRANSFORM && ((given.flags & 3) == 3 || given.flags >> 2 == 3))
+      bad_argument(where_ + "flags " + std::to_string(given.flags) + " name a space that does not exist");
     Node node;
     node.kind = given.kind;
     node.option = given.option;
@@ -132,6 +161,8 @@ public:
       read_pictures(given, node);
     if (given.kind == LANCER_NODE_CURVES)
       read_table(given, node);
+    if (given.kind == LANCER_NODE_IES)
+      read_angles(given, node);
     if (given.kind == LANCER_NODE_BUMP) {
       if (given.first > at)
         bad_argument(where_ + "first " + std::to_string(given.first) + " is a later node");
@@ -181,15 +212,34 @@ private:
     node.image_count = given.image_count;
   }
 
-  void read_table(const lancer_node &given, Node &node) const {
+  const Image &table_of(const lancer_node &given, Node &node) const {
     if (given.image >= description_.images.size())
       bad_argument(where_ + "image " + std::to_string(given.image) + " >= " + std::to_string(description_.images.size()) +
                    " images");
-    const Image &table = description_.images[given.image];
-    if (table.kind != TexelKind::Float || table.height != 1 || table.width < 2)
-      bad_argument(where_ + "image " + std::to_string(given.image) + " is not a row of at least two floating-point texels");
     node.image = given.image;
     node.image_count = 1;
+    return description_.images[given.image];
+  }
+
+  void read_table(const lancer_node &given, Node &node) const {
+    const Image &table = table_of(given, node);
+    if (table.kind != TexelKind::Float || table.height != 1 || table.width < 2)
+      bad_argument(where_ + "image " + std::to_string(given.image) + " is not a row of at least two floating-point texels");
+  }
+
+  void read_angles(const lancer_node &given, Node &node) const {
+    const Image &table = table_of(given, node);
+    const std::string image = where_ + "image " + std::to_string(given.image);
+    if (table.kind != TexelKind::Float || table.channels != 1 || table.width < 5 || table.height < 5)
+      bad_argument(image + " is not a table of at least 5 x 5 floating-point numbers");
+    const auto *texels = reinterpret_cast<const float *>(table.texels.get());
+    const auto check = [&](uint32_t count, size_t stride) {
+      for (uint32_t i = 2; i + 1 < count; ++i)
+        if (!std::isfinite(texels[i * stride]) || (i > 2 && !(texels[i * stride] >= texels[(i - 1) * stride])))
+          bad_argument(image + ": angle " + to_text(texels[i * stride]) + " is not above the one before");
+    };
+    check(table.width, 1);
+    check(table.height, table.width);
   }
 
   // Converts names to numbers, including names that the kind implies.
@@ -254,7 +304,9 @@ Program read_program(Description &description, const std::string &owner, const l
   for (uint32_t i = 0; i < count; ++i)
     program.nodes.push_back(reader.read(nodes[i], i));
   for (uint32_t i = 0; i < count; ++i) {
-    program.asks_light_path |= program.nodes[i].kind == LANCER_NODE_LIGHT_PATH;
+    // Pixels have a size for camera rays alone.
+    const Node &node = program.nodes[i];
+    program.asks_light_path |= node.kind == LANCER_NODE_LIGHT_PATH || (node.kind == LANCER_NODE_WIREFRAME && node.flags & 1);
     if (program.nodes[i].kind != LANCER_NODE_BUMP)
       continue;
     program.nodes[i].heights = uint32_t(program.heights.size());

@@ -19,6 +19,8 @@ struct LightDescription {
   Affine to_world;
   LightKind kind = LightKind::Point;
   glm::vec3 emission{0.0f}; // POINT, SPOT: W/sr; SUN: W/m^2; AREA: radiance
+  Program program;
+  Parameter strength{glm::vec3(1.0f)}; // factor of emission
   float radius = 0.0f;
   bool soft_falloff = true;
   float spot_angle = 0.0f, spot_blend = 0.0f;

@@ -86,7 +86,8 @@ void PathIntegrator::shade() {
 
 // Adds the lamps on the way of each ray, with the weight of multiple importance sampling.
 void PathIntegrator::add_lamps() {
-  for (const MetLight &met : met_.find(queue_.rays, hits_, queue_.from)) {
+  for (const MetLight &met :
+       met_.find(queue_.rays, hits_, queue_.from, [&](size_t ray) { return queue_.paths[ray].asking_path(); })) {
     const Path &path = queue_.paths[met.ray];
     if (path.shows_light(scene_.lights.hidden_from(met.light)))
       film_.add(path, path.beta * met.radiance * met.weight, false);

@@ -16,7 +16,8 @@ LightQuery query_of(const SurfaceBlock &surfaces, const LobeBlock &lobes, uint32
 } // namespace
 
 LightStage::LightStage(const Scene &scene, const Camera *camera)
-    : scene_(scene), kernel_(light_kernel()), emission_(scene.node_scene(camera), scene.materials), sky_(scene, camera) {}
+    : scene_(scene), kernel_(light_kernel()), emission_(scene.node_scene(camera), scene.materials), sky_(scene, camera),
+      lamp_nodes_(scene, camera), has_lamp_shaders_(!scene.lamp_shaders.empty()) {}
 
 // Clears the samples of all lanes.
 void LightStage::begin() {
@@ -112,7 +113,13 @@ void LightStage::sample(uint32_t light, uint32_t lanes, const Doubles (&p)[3], c
   if (light < lights.lamps().size()) {
     const Light &lamp = lights.lamps()[light];
     samples_.far = lamp.kind == LightKind::Sun ? lanes : 0;
-    return kernel_.sample_lamp(lamp, p, numbers, lanes, samples_);
+    kernel_.sample_lamp(lamp, p, numbers, lanes, samples_);
+    if (lamp.shader != kNone) {
+      lamps_ = lanes;
+      std::fill_n(lamp_, kBlockLanes, &lamp);
+      shade_lamps([](uint32_t) { return LightPath<float>{}; });
+    }
+    return;
   }
   if (light == lights.environment_light()) {
     skies_ = lanes;

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "compile/scene.h"
+#include "integrator/stages/lamps.h"
 #include "integrator/stages/numbers.h"
 #include "integrator/stages/surface.h"
 #include "lights/emission.h"
@@ -141,6 +142,8 @@ public:
     choose(lanes, surfaces, lobes, numbers);
     if (lamps_ != 0)
       kernel_.sample_lamps(lamp_, surfaces.p, numbers, choices_.probability, lamps_, samples_);
+    if (has_lamp_shaders_)
+      shade_lamps(path);
     sample_faces(surfaces.p);
     each_lane(emitters_, [&](uint32_t lane) {
       if (faces_.used >> lane & 1)
@@ -183,6 +186,20 @@ private:
   glm::vec3 face_emission(uint32_t lane, LightPath<float> path);
   void sample_shape(uint32_t lane, const Doubles (&p)[3], const VertexNumbers &numbers, LightPath<float> path);
   void sample_sky(const VertexNumbers &numbers, uint32_t transmits);
+  // Multiplies the radiance of lamps by what their nodes say.
+  template <class PathOf> void shade_lamps(PathOf &&path) {
+    uint32_t shaded = 0;
+    each_lane(lamps_, [&](uint32_t lane) {
+      if (lamp_[lane]->shader == kNone || !(samples_.pdf[lane] > 0.0))
+        return;
+      shaded |= 1u << lane;
+      const double distance = samples_.far >> lane & 1 ? 0.0 : samples_.distance[lane];
+      lamp_nodes_.set(lane, *lamp_[lane], get(samples_.target, lane), get(samples_.wi, lane), distance, path(lane));
+    });
+    lamp_nodes_.look(shaded);
+    each_lane(shaded,
+              [&](uint32_t lane) { put(get(samples_.radiance, lane) * lamp_nodes_.strength(lane), samples_.radiance, lane); });
+  }
   const Emitter &emitter_of(uint32_t lane) const {
     return scene_.lights.emitters()[choices_.number[lane] - scene_.lights.lamps().size()];
   }
@@ -191,6 +208,8 @@ private:
   const LightKernel &kernel_;
   EmissionAt emission_;
   SkyStage sky_;
+  LampStage lamp_nodes_;
+  bool has_lamp_shaders_;
   LightChoices choices_{};
   const Light *lamp_[kBlockLanes];
   Words face_;                                    // of the chosen emitter

@@ -7,12 +7,11 @@
 
 namespace lancer {
 
-std::span<const MetLight> MetLights::find(std::span<const Ray> rays, std::span<const Hit> hits,
-                                          std::span<const Scattering> from) {
+void MetLights::find(std::span<const Ray> rays, std::span<const Hit> hits, std::span<const Scattering> from) {
   const LightSet &lights = scene_.lights;
   met_.clear();
   if (!lights.any_on_the_way())
-    return met_;
+    return;
   rays_ = rays;
   hits_ = hits;
   from_ = from;
@@ -36,7 +35,6 @@ std::span<const MetLight> MetLights::find(std::span<const Ray> rays, std::span<c
     if (lights.finds())
       lights.wide_tree().along(segments_, count, *this);
   }
-  return met_;
 }
 
 // Meets one lamp in the lanes that may hit it.
@@ -74,7 +72,7 @@ bool MetLights::is_on_segment(size_t ray, const LightHit &hit) const {
 // chosen: the probability with which sampling chooses the light.
 void MetLights::add(size_t ray, uint32_t light, const LightHit &hit, double chosen) {
   const double pdf = from_[ray].pdf;
-  met_.push_back({ray, light, hit.radiance, pdf > 0.0 ? mis_weight(pdf, hit.pdf * chosen) : 1.0f});
+  met_.push_back({ray, light, hit.radiance, pdf > 0.0 ? mis_weight(pdf, hit.pdf * chosen) : 1.0f, hit.distance});
 }
 
 float MetLights::emission_weight(const Scattering &from, const Surface &surface) const {

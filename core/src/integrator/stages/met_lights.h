@@ -28,14 +28,24 @@ struct MetLight {
   uint32_t light;
   glm::vec3 radiance;
   float weight;
+  double distance; // as LightHit
 };
 
 class MetLights final : LightVisitor {
 public:
-  MetLights(const Scene &scene, const Camera &camera) : scene_(scene), kernel_(light_kernel()), sky_(scene, &camera) {}
+  MetLights(const Scene &scene, const Camera &camera)
+      : scene_(scene), kernel_(light_kernel()), sky_(scene, &camera), lamps_(scene, &camera) {}
 
-  // Returns all lamps that the rays pass before they end, because lights occlude nothing; valid until the next call.
-  std::span<const MetLight> find(std::span<const Ray> rays, std::span<const Hit> hits, std::span<const Scattering> from);
+  // Returns all lamps that the rays pass before they end, because lights occlude nothing; valid until the next call. path(ray):
+  // returns the Light Path of a light sample at the last scattering, which nodes of lamps read.
+  template <class PathOf>
+  std::span<const MetLight> find(std::span<const Ray> rays, std::span<const Hit> hits, std::span<const Scattering> from,
+                                 PathOf &&path) {
+    find(rays, hits, from);
+    if (!scene_.lamp_shaders.empty())
+      shade(path);
+    return met_;
+  }
   // Returns the weight of the emission of a surface that a ray has hit.
   float emission_weight(const Scattering &from, const Surface &surface) const;
 
@@ -47,6 +57,28 @@ public:
   float sky_weight(uint32_t lane, const Scattering &from) const;
 
 private:
+  void find(std::span<const Ray> rays, std::span<const Hit> hits, std::span<const Scattering> from);
+  // Multiplies the radiance of met lamps by what their nodes say.
+  template <class PathOf> void shade(PathOf &&path) {
+    std::erase_if(met_, [](const MetLight &met) { return met.radiance == glm::vec3(0.0f); });
+    for (size_t first = 0; first < met_.size(); first += kBlockLanes) {
+      const auto now = std::span(met_).subspan(first, std::min<size_t>(kBlockLanes, met_.size() - first));
+      uint32_t shaded = 0;
+      for (uint32_t lane = 0; lane < now.size(); ++lane) {
+        const MetLight &met = now[lane];
+        const Light &lamp = scene_.lights.lamps()[met.light];
+        if (lamp.shader == kNone)
+          continue;
+        shaded |= 1u << lane;
+        const glm::dvec3 wi = glm::normalize(rays_[met.ray].d);
+        const bool far = lamp.kind == LightKind::Sun;
+        const glm::dvec3 target = far ? glm::dvec3(0.0) : from_[met.ray].p + met.distance * wi;
+        lamps_.set(lane, lamp, target, wi, far ? 0.0 : met.distance - from_[met.ray].passed, path(met.ray));
+      }
+      lamps_.look(shaded);
+      each_lane(shaded, [&](uint32_t lane) { now[lane].radiance *= lamps_.strength(lane); });
+    }
+  }
   // Meets a light of the tree of many lights with a ray of the block.
   void visit(uint32_t lane, uint32_t light) override { meet_alone(first_ + lane, light); }
   void meet_lamp(uint32_t lanes, uint32_t light);
@@ -60,6 +92,7 @@ private:
   const Scene &scene_;
   const LightKernel &kernel_;
   SkyStage sky_;
+  LampStage lamps_;
   // The last batch: its rays, their hits and the vertices that they left.
   std::span<const Ray> rays_;
   std::span<const Hit> hits_;
