@@ -157,7 +157,7 @@ def test_wrong_nodes(raw):
     none = max(kinds) + 1
     refused_with(raw.node(kind=none), words=["kind", str(none)])
     for kind, options in (
-        (kinds.COORDINATE, 13),
+        (kinds.COORDINATE, 14),
         (kinds.MATH, 41),
         (kinds.VECTOR_MATH, 24),
         (kinds.MIX, 19),
@@ -166,10 +166,17 @@ def test_wrong_nodes(raw):
         (kinds.NOISE, 5),
         (kinds.VORONOI, 5),
         (kinds.GRADIENT, 7),
+        (kinds.WAVE, 3),
+        (kinds.MAGIC, 11),
+        (kinds.GABOR, 2),
+        (kinds.RADIAL_TILING, 2),
+        (kinds.VECTOR_TRANSFORM, 3),
         (kinds.OBJECT_INFO, 5),
         (kinds.LIGHT_PATH, 15),
     ):
         refused_with(raw.node(kind=kind, option=options), words=["option", str(options)])
+    for flags in (3, 3 << 2):
+        refused_with(raw.node(kind=kinds.VECTOR_TRANSFORM, flags=flags), words=["flags", str(flags)])
     # A node may refer only to nodes before it.
     for node in (0, 1, 2**31 - 1, -2):
         refused_with(raw.node(kind=kinds.GAMMA, inputs=[raw.reference(node)]), words=[str(node)])

@@ -23,8 +23,12 @@ def _judged(which, folder, name, least):
 
 @pytest.mark.parametrize("which", [MODULE, PROGRAM])
 @pytest.mark.parametrize(
-    "name, least", [("noise", 19), ("voronoi", 100), ("gradient", 7), ("curves", 30), ("color_models", 11)]
-)
+    "name, least",
+    [
+        ("noise", 19), ("voronoi", 100), ("gradient", 7), ("curves", 30), ("color_models", 11), ("waves", 48), ("magic", 44),
+        ("cells", 34), ("white_noise", 8), ("spectrum", 4),
+    ],
+)  # fmt: skip
 def test_procedural_nodes(which, name, least, tmp_path):
     _judged(which, tmp_path, name, least)
 
@@ -32,3 +36,9 @@ def test_procedural_nodes(which, name, least, tmp_path):
 def test_musgrave(tmp_path):
     """The node of Blender before 4.1."""
     _judged(PROGRAM, tmp_path, "musgrave", 80)
+
+
+@pytest.mark.parametrize("name, least", [("gabor", 18), ("radial_tiling", 56)])
+def test_newer_nodes(name, least, tmp_path):
+    """The nodes that Blender 3 does not have."""
+    _judged(MODULE, tmp_path, name, least)

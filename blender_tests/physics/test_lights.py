@@ -351,8 +351,13 @@ def test_export_under_transforms(which, tmp_path):
 
 @pytest.mark.parametrize("which", [MODULE, PROGRAM])
 def test_lights_that_are_not_known_keep_their_power(which, tmp_path):
-    got = blenders.run(which, tmp_path, "light_cases", "unknown")
-    share, messages = got["TexImage"]
-    assert share == 1.0 and len(messages) == 1 and "its own power is used" in messages[0]
-    share, messages = got["TexMagic"]
+    share, messages = blenders.run(which, tmp_path, "light_cases", "unknown")
     assert share == 1.0 and len(messages) == 1 and "white is used" in messages[0]
+
+
+@pytest.mark.parametrize("which", [MODULE, PROGRAM])
+def test_the_nodes_of_a_light_reach_the_tracer(which, tmp_path):
+    got = blenders.run(which, tmp_path, "light_cases", "textured")
+    node, kinds, messages = got["TexImage"]
+    assert node == len(kinds) - 1 and messages == []
+    assert got["RGB"] == [-1, [], []]

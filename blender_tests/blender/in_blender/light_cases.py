@@ -4,7 +4,9 @@ import bpy
 import stage
 from mathutils import Euler, Matrix
 
-from addon.export.lights import export_light
+from addon.bindings.shading import NodeRef
+from addon.export.images import Images
+from addon.export.lights import export_lamp_nodes, export_light
 from addon.messages.messages import Messages
 
 
@@ -91,17 +93,32 @@ def transforms():
 
 
 def unknown():
-    """Return [share of the plain lamp's power, messages] of lights whose nodes have an image or an unsupported texture."""
+    """Return [share of the plain lamp's power, messages] of a light whose nodes have an unsupported node."""
+    stage.empty()
+    plain, shown = stage.light("POINT"), stage.light("POINT")
+    tree, emission = _nodes(shown)
+    node = tree.nodes.new("ShaderNodeAmbientOcclusion")
+    tree.links.new(node.outputs["Color"], emission.inputs["Color"])
+    messages = Messages()
+    share = _export(shown, messages).emission[0] / _export(plain, Messages()).emission[0]
+    return [share, messages.lines()]
+
+
+def textured():
+    """Return [strength's node, kinds of the nodes, messages] of a light with an image, and of one with a constant graph."""
+    stage.empty()
     result = {}
-    for kind in ("TexImage", "TexMagic"):
-        stage.empty()
-        plain, shown = stage.light("POINT"), stage.light("POINT")
+    for kind in ("TexImage", "RGB"):
+        shown = stage.light("POINT")
         tree, emission = _nodes(shown)
         node = tree.nodes.new("ShaderNode" + kind)
         if kind == "TexImage":
             node.image = bpy.data.images.new("picture", 4, 4)
         tree.links.new(node.outputs["Color"], emission.inputs["Color"])
         messages = Messages()
-        share = _export(shown, messages).emission[0] / _export(plain, Messages()).emission[0]
-        result[kind] = [share, messages.lines()]
+        bpy.context.view_layer.update()
+        shine = export_lamp_nodes(shown, messages, Images())
+        light = export_light(shown, shown.matrix_world, messages, shine=shine)
+        node = light.strength.node if isinstance(light.strength, NodeRef) else -1
+        result[kind] = [node, [int(node.kind) for node in light.nodes], messages.lines()]
     return result

@@ -26,12 +26,12 @@ def thin():
 
 
 def unknown_sources():
-    """Link a texture that Lancer does not support to inputs of every type."""
+    """Link a node that Lancer does not support to inputs of every type."""
     tree = Tree("fed")
-    magic = tree.node("TexMagic")
+    unknown = tree.node("AmbientOcclusion")
     node = tree.node("BsdfGlossy", distribution="GGX", Color=(0.9, 0.1, 0.1), Roughness=0.37)
-    factor = next(socket for socket in magic.outputs if socket.type == "VALUE")
-    color = next(socket for socket in magic.outputs if socket.type == "RGBA")
+    factor = next(socket for socket in unknown.outputs if socket.type == "VALUE")
+    color = next(socket for socket in unknown.outputs if socket.type == "RGBA")
     tree.tree.links.new(factor, node.inputs["Roughness"])
     tree.tree.links.new(color, node.inputs["Color"])
     tree.show(node.outputs[0])

@@ -116,7 +116,13 @@ VALUES = {
     "ShaderNodeCombineHSV": Kind({"H": F, "S": F, "V": F}, {"Color": "c"}, weight=0.3),
     "ShaderNodeSeparateHSV": Kind({"Color": C}, {"H": "f", "S": "f", "V": "f"}, weight=0.3),
     "ShaderNodeVectorTransform": Kind(
-        {"Vector": V}, {"Vector": "v"}, {"vector_type": ("POINT", "VECTOR", "NORMAL")}, 0.3, special=("same_space",)
+        {"Vector": V},
+        {"Vector": "v"},
+        {
+            "vector_type": ("POINT", "VECTOR", "NORMAL"), "convert_from": ("WORLD", "OBJECT", "CAMERA"),
+            "convert_to": ("WORLD", "OBJECT", "CAMERA"),
+        },
+        0.5,
     ),
     "ShaderNodeValToRGB": Kind({"Fac": F}, {"Color": "c", "Alpha": "f"}, special=("ramp",), weight=2.0, always=("Fac",)),
     "ShaderNodeRGBCurve": Kind({"Fac": F, "Color": C}, {"Color": "c"}, special=("curves",)),
@@ -190,6 +196,58 @@ VALUES = {
         {"gradient_type": ("LINEAR", "QUADRATIC", "EASING", "DIAGONAL", "SPHERICAL", "QUADRATIC_SPHERE", "RADIAL")},
         special=("mapping",),
     ),
+    "ShaderNodeTexWave": Kind(
+        {
+            "Vector": TEXTURE, "Scale": ("f", 0.3, 2.0), "Distortion": ("f", 0.0, 4.0), "Detail": ("f", 0.0, 3.0),
+            "Detail Scale": ("f", 0.5, 2.0), "Detail Roughness": F, "Phase Offset": ("f", -3.0, 3.0),
+        },
+        {"Color": "c", "Fac": "f"},
+        {
+            "wave_type": ("BANDS", "RINGS"), "bands_direction": ("X", "Y", "Z", "DIAGONAL"),
+            "rings_direction": ("X", "Y", "Z", "SPHERICAL"), "wave_profile": ("SIN", "SAW", "TRI"),
+        },
+        special=("mapping",),
+    ),
+    "ShaderNodeTexMagic": Kind(
+        {"Vector": TEXTURE, "Scale": ("f", 0.5, 3.0), "Distortion": ("f", 0.3, 2.0)},
+        {"Color": "c", "Fac": "f"},
+        {"turbulence_depth": (0, 1, 2, 3, 5)},
+        special=("mapping",),
+    ),
+    "ShaderNodeTexChecker": Kind(
+        {"Vector": TEXTURE, "Color1": C, "Color2": C, "Scale": ("f", 1.0, 6.0)},
+        {"Color": "c", "Fac": "f"},
+        special=("mapping",),
+    ),
+    "ShaderNodeTexBrick": Kind(
+        {
+            "Vector": TEXTURE, "Color1": C, "Color2": C, "Mortar": C, "Scale": ("f", 1.0, 5.0), "Mortar Size": ("f", 0.0, 0.1),
+            "Mortar Smooth": F, "Bias": ("f", -0.5, 0.5), "Brick Width": ("f", 0.2, 0.8), "Row Height": ("f", 0.1, 0.5),
+        },
+        {"Color": "c", "Fac": "f"},
+        {"offset": (0.0, 0.5, 0.3), "offset_frequency": (1, 2, 3), "squash": (1.0, 0.6), "squash_frequency": (1, 2)},
+        special=("mapping",),
+    ),
+    "ShaderNodeTexGabor": Kind(
+        {
+            "Vector": TEXTURE, "Scale": ("f", 0.5, 3.0), "Frequency": ("f", 0.5, 3.0), "Anisotropy": F,
+            "Orientation 2D": ("f", -3.0, 3.0), "Orientation 3D": V,
+        },
+        {"Value": "f", "Phase": "f", "Intensity": "f"},
+        {"gabor_type": ("2D", "3D")},
+        0.5,
+        special=("mapping",),
+    ),
+    "ShaderNodeRadialTiling": Kind(
+        {"Vector": TEXTURE, "Sides": ("f", 3.0, 7.0), "Roundness": F},
+        {"Segment Coordinates": "v", "Segment ID": "f", "Segment Width": "f", "Segment Rotation": "f"},
+        {"normalize": SWITCH},
+        0.5,
+        always=("Vector",),
+    ),
+    "ShaderNodeWavelength": Kind({"Wavelength": ("f", 360.0, 800.0)}, {"Color": "c"}, weight=0.5),
+    "ShaderNodeCameraData": Kind({}, {"View Vector": "v", "View Z Depth": "f", "View Distance": "f"}, weight=0.5),
+    "ShaderNodeWireframe": Kind({"Size": ("f", 0.0, 0.2)}, {"Fac": "f"}, {"use_pixel_size": SWITCH}, 0.5),
     "ShaderNodeTexCoord": Kind(
         {},
         {"Generated": "v", "Normal": "v", "UV": "v", "Object": "v", "Camera": "v", "Window": "v", "Reflection": "v"},
@@ -205,7 +263,7 @@ VALUES = {
         {},
         {
             "Position": "v", "Normal": "v", "Tangent": "v", "True Normal": "v", "Incoming": "v", "Backfacing": "f",
-            "Parametric": "v",
+            "Parametric": "v", "Pointiness": "f", "Random Per Island": "f",
         },
         weight=2.0,
     ),

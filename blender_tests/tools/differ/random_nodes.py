@@ -7,7 +7,8 @@ UV_MAPS = ("UVMap", "Second", "", "Missing")
 # Shares: attributes that meshes may have, names with a meaning of their own, and none of either.
 ATTRIBUTES = {
     "Number": 2, "Whole": 2, "Vector": 2, "Color": 2, "Byte": 2, "Flag": 2, "Pair": 2, "Four": 1, "Odd": 1, "UVMap": 2,
-    "generated": 0.5, "uv": 0.5, "vertex_color": 0.5, "position": 0.3, "material_index": 0.2, "Missing": 1, "": 0.3,
+    "generated": 0.5, "uv": 0.5, "vertex_color": 0.5, "pointiness": 0.3, "random_per_island": 0.3, "position": 0.3,
+    "material_index": 0.2, "Missing": 1, "": 0.3,
 }  # fmt: skip
 COLORS = ("Color", "Byte", "Color", "Byte", "", "Missing")
 _ALPHAS = (1.0, 1.0, 0.5, 0.0)
@@ -200,8 +201,6 @@ class Trees:
             props["attribute_name"] = dice.pick(ATTRIBUTES if kind == "GEOMETRY" else random_properties.NAMES)
         elif special == "layer":
             props["layer_name"] = dice.pick(COLORS)
-        elif special == "same_space":
-            props["convert_from"] = props["convert_to"] = dice.pick(("WORLD", "OBJECT", "CAMERA"))
         elif special == "ramp":
             places = sorted(dice.number() for _ in range(dice.whole(2, 4)))
             more["ramp"] = {
