@@ -19,6 +19,7 @@ from ..messages.severity import Severity
 from . import colors, coordinates, curves, ies, maths, normals, patterns, places, procedural, spectrum, textures
 from .arithmetic import THIRDS, triple
 from .node_builder import UNKNOWN, NodeBuilder, in_three
+from .resolved import ShaderTree
 from .sockets import find
 from .walk import Site, Walker
 
@@ -46,14 +47,26 @@ class NodeGraph(NodeBuilder):
         self.material_index = 0  # of the owner; 0 if the owner is no material
         self.normal = (0.0, 0.0, 0.0)  # the bumped normal of the whole material; (0, 0, 0) is the shading normal
         self.walker = Walker()
+        self._tree = None  # the ShaderTree that is read
         self._active = set()
         self._is_ahead = False
+
+    def tree_of(self, block):
+        """Return the nodes of a material, world or light as Cycles reads them; None without any."""
+        self._tree = ShaderTree(block)
+        for name in self._tree.models:
+            text = f"beside zones, bundles or menus the nodes inside the group '{name}' are shown, as in Cycles"
+            self.messages.add(f"{self.owner}: {text}")
+        return self._tree.tree
+
+    def _name(self, node):
+        return node.name if self._tree is None else self._tree.name(node)
 
     def tell(self, site, text, key=None, severity=Severity.DIFFERENT):
         """Add a message that names the node. key: of Messages.add; None counts the node's type as missing, "" nothing."""
         node = _site(site).node
         self.messages.add(
-            f"{self.owner}, node '{node.name}': {text}", f"node:{node.bl_label}" if key is None else key, severity
+            f"{self.owner}, node '{self._name(node)}': {text}", f"node:{node.bl_label}" if key is None else key, severity
         )
 
     def parameter(self, site, names, default=0.0, kind="number", low=-math.inf, high=math.inf):
@@ -68,7 +81,7 @@ class NodeGraph(NodeBuilder):
         value = self._read(site, socket)
         if isinstance(value, NodeRef):
             return value
-        who = f"{self.owner}, node '{site.node.name}'"
+        who = f"{self.owner}, node '{self._name(site.node)}'"
         if kind == "number":
             return self.messages.number(value if isinstance(value, float) else value[0], who, socket.name, default, low, high)
         if kind == "color":
@@ -93,7 +106,7 @@ class NodeGraph(NodeBuilder):
         if origin is None or origin.site is None:
             return default
         if self._output(origin.site, origin.output) is None:
-            source = f"'{origin.site.node.name}' ({origin.site.node.bl_label})"
+            source = f"'{self._name(origin.site.node)}' ({origin.site.node.bl_label})"
             self.tell(
                 site, f"input '{socket.name}' is linked to {source}, which is not supported, its default is used", _key(origin)
             )
@@ -173,7 +186,7 @@ class NodeGraph(NodeBuilder):
 
     def _stand_in(self, site, socket, origin):
         """Return the stand-in, with a message, for an input whose source is not supported."""
-        source = f"'{origin.site.node.name}' ({origin.site.node.bl_label})"
+        source = f"'{self._name(origin.site.node)}' ({origin.site.node.bl_label})"
         if socket.type == "RGBA":
             told = f"input '{socket.name}' is linked to {source}, which is not supported, {self.unknown} is used"
             self.tell(site, told, _key(origin), Severity.WRONG)

@@ -36,7 +36,7 @@ def export_lamp_nodes(thing, messages, images, depsgraph=None, value=None):
         return LampNodes()
     graph = NodeGraph(f"light '{thing.name}'", messages, images, depsgraph, unknown="white")
     graph.is_of_lamp, graph.lamp_value = True, value
-    emission = emission_of(graph, light.node_tree, "OUTPUT_LIGHT")
+    emission = emission_of(graph, graph.tree_of(light), "OUTPUT_LIGHT")
     # Nodes of which no output is left cost nothing.
     nodes = graph.nodes if isinstance(emission, NodeRef) else ()
     return LampNodes(emission, nodes, frozenset(graph.objects), graph.reads_layer)

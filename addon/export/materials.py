@@ -156,7 +156,7 @@ def _own_model(own, who, messages):
 
 def _from_nodes(material, graph):
     """Return the fields of a snapshot.Material from its node tree."""
-    who, messages, tree = graph.owner, graph.messages, material.node_tree
+    who, messages, tree = graph.owner, graph.messages, graph.tree_of(material)
     output = output_node(tree, "OUTPUT_MATERIAL") if tree is not None else None
     if output is None:
         messages.add(f"{who}: has no Material Output node that Cycles uses, black is used", severity=Severity.WRONG)

@@ -13,6 +13,28 @@ def _value(graph, site, output):
     return float(output.default_value)
 
 
+def _bool(graph, site, output):
+    return float(site.node.boolean)
+
+
+def _integer(graph, site, output):
+    return float(site.node.integer)
+
+
+def _constant_vector(graph, site, output):
+    return tuple(map(float, site.node.vector))
+
+
+def _scene_time(graph, site, output):
+    """Return the frame or its time in seconds: a property of the scene, and the same for all samples."""
+    graph.reads_layer = True
+    if graph.depsgraph is None:
+        return 0.0
+    scene = graph.depsgraph.scene_eval
+    frame = scene.frame_current_final
+    return frame if output.identifier == "Frame" else frame * scene.render.fps_base / scene.render.fps
+
+
 def _math(graph, site, output):
     operation = MathOperation.__members__.get(site.node.operation)
     if operation is None:
@@ -152,6 +174,10 @@ def transformed(graph, vector, rows):
 READERS = {
     "CLAMP": _clamp,
     "COMBXYZ": _combine,
+    "INPUT_BOOL": _bool,
+    "INPUT_INT": _integer,
+    "INPUT_SCENE_TIME": _scene_time,
+    "INPUT_VECTOR": _constant_vector,
     "MAP_RANGE": _map_range,
     "MATH": _math,
     "NORMAL": _normal,

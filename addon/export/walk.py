@@ -9,7 +9,7 @@ from .course_models import model_of
 # From 5.0 on a link from a reroute or muted node without input counts as no link; before, its value is 0.
 _LOOSE_ENDS_ARE_ZERO = bpy.app.version < (5, 0)
 # CUSTOM GROUP is a node of an add-on with a tree of its own.
-_GROUPS = {"GROUP", "CUSTOM GROUP"}
+GROUPS = {"GROUP", "CUSTOM GROUP"}
 _LONGEST = 10000  # hops: ends the walk in a cycle of reroutes
 
 
@@ -54,7 +54,7 @@ class Walker:
             node, output = link.from_node, link.from_socket
             if node.mute or node.type == "REROUTE":
                 onward = _passed_through(node, output)
-            elif node.type in _GROUPS and not _is_closure(node, output):
+            elif node.type in GROUPS and not _is_closure(node, output):
                 onward, path = _group_result(node, output), (*path, node)
                 if onward is None:
                     constant, depth = None, len(types)

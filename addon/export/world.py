@@ -77,13 +77,14 @@ def export_world(world, images, depsgraph, messages):
 def _nodes(world, graph, who, messages):
     if bpy.app.version < (5, 0) and not world.use_nodes:
         return messages.color(world.color, who, "colour")
-    output = output_node(world.node_tree, "OUTPUT_WORLD") if world.node_tree is not None else None
+    tree = graph.tree_of(world)
+    output = output_node(tree, "OUTPUT_WORLD") if tree is not None else None
     if output is None:
         return 0.0, 0.0, 0.0
     if output.inputs["Volume"].is_linked:
         text = f"{who}: volumes are not supported, its background alone is shown"
         messages.add(text, "feature:volume of the world", severity=Severity.LEFT_OUT)
-    return emission_of(graph, world.node_tree, "OUTPUT_WORLD")
+    return emission_of(graph, tree, "OUTPUT_WORLD")
 
 
 def _cube(own, graph, who, messages):

@@ -49,7 +49,13 @@ def set_board(scene, tiles):
 
 
 def shining(value):
-    return material(lambda nodes: nodes.add("ShaderNodeEmission", Color=_positive(nodes, value(nodes))))
+    """Returns a material that shines in a value; a shader stays as it is."""
+
+    def surface(nodes):
+        output = value(nodes)
+        return output if output.type == "SHADER" else nodes.add("ShaderNodeEmission", Color=_positive(nodes, output))
+
+    return material(surface)
 
 
 def view_board(scene, count):

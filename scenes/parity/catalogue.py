@@ -22,6 +22,7 @@ SUBJECTS = (
     "inputs_objects",
     "inputs_instances",
     "inputs_places",
+    "zones",
     "textures_normals",
     "textures_computed",
     "textures_patterns",

@@ -31,12 +31,12 @@ class Nodes:
         for name, value in (props or {}).items():
             setattr(node, name, value)
         for socket, value in zip(node.inputs, values, strict=False):
-            self._give(socket, value)
+            self.give(socket, value)
         for name, value in inputs.items():
-            self._give(find(node.inputs, name.replace("_", " ")), value)
+            self.give(find(node.inputs, name.replace("_", " ")), value)
         return node
 
-    def _give(self, socket, value):
+    def give(self, socket, value):
         if isinstance(value, bpy.types.Node):
             value = first_output(value)
         if isinstance(value, bpy.types.NodeSocket):
