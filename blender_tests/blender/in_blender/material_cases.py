@@ -290,14 +290,20 @@ def attributes():
     } | {"messages": list(messages), "original": np.array(vertices, float).tolist(), "version": list(bpy.app.version)}
 
 
-def fuzz(count):
-    """Set and link every node of materials at random, also in groups. Return what was built, and the failures."""
+def fuzz(count, zones=False):
+    """Set and link every node of materials at random, also in groups. Return what was built, and the failures.
+
+    zones: also nodes that Blender resolves, which it then does with most of the trees.
+    """
     stage.empty()
     material = bpy.data.materials.new("asked")
     material.use_nodes = True
     kinds = []
     for name in sorted(dir(bpy.types)):
-        if name.startswith("ShaderNode"):
+        kind = getattr(bpy.types, name)
+        is_node = isinstance(kind, type) and issubclass(kind, bpy.types.Node)
+        # A link to a reroute changes its sockets, which the links below are made of.
+        if name.startswith("ShaderNode") or zones and is_node and name != "NodeReroute":
             try:
                 material.node_tree.nodes.new(name)
                 kinds.append(name)
@@ -312,6 +318,8 @@ def fuzz(count):
         _fill(rng, group, kinds, 6, picture, None)
         tree = Tree(f"fuzz {seed}")
         nodes = _fill(rng, tree.tree, kinds, 30, picture, group)
+        if zones:
+            _pair(rng, nodes)
         outputs = [socket for node in nodes for socket in node.outputs]
         shaders = [socket for socket in outputs if socket.type == "SHADER"]
         if shaders:
@@ -350,8 +358,8 @@ def _fill(rng, tree, kinds, count, picture, group):
                     setattr(node, field.identifier, rng.choice([item.identifier for item in field.enum_items]))
                 elif field.type == "BOOLEAN":
                     setattr(node, field.identifier, rng.random() < 0.2)
-            except (TypeError, AttributeError):
-                pass  # not among the current choices
+            except (TypeError, AttributeError, IndexError):
+                pass  # not among the current choices, or there is none
         if hasattr(node, "image") and rng.random() < 0.7:
             node.image = picture
         if node.type == "GROUP":
@@ -364,13 +372,27 @@ def _fill(rng, tree, kinds, count, picture, group):
     outputs = {}
     for node in nodes:
         for socket in node.outputs:
-            outputs.setdefault(socket.type == "SHADER", []).append(socket)
+            if socket.type != "CUSTOM":
+                outputs.setdefault(socket.type == "SHADER", []).append(socket)
     # Three of four links join sockets of the same kind, so that most links are valid.
-    for socket in (socket for node in nodes for socket in node.inputs):
+    for socket in (socket for node in nodes for socket in node.inputs if socket.type != "CUSTOM"):
         alike = outputs.get((socket.type == "SHADER") == (rng.random() < 0.75))
         if alike and rng.random() < 0.7:
             tree.links.new(rng.choice(alike), socket)
     return nodes
+
+
+def _pair(rng, nodes):
+    """Make zones of the nodes of their ends, with items of any type."""
+    for begin, end in (("GeometryNodeRepeatInput", "GeometryNodeRepeatOutput"), ("NodeClosureInput", "NodeClosureOutput")):
+        ends = [node for node in nodes if node.bl_idname == end]
+        for node in nodes:
+            if node.bl_idname == begin and ends:
+                last = ends.pop()
+                node.pair_with_output(last)
+                for items in (getattr(last, name, None) for name in ("repeat_items", "input_items", "output_items")):
+                    if items is not None:
+                        items.new(rng.choice(("FLOAT", "RGBA", "VECTOR", "SHADER", "BUNDLE", "CLOSURE")), "Item")
 
 
 def panel():
