@@ -44,6 +44,7 @@ class NodeGraph(NodeBuilder):
         # For a lamp: a function that returns four numbers by the name of an ObjectAttribute or of LAMP_FACTS.
         self.lamp_value = None
         self.reads_layer = False  # whether the nodes read properties of the view layer, the scene or its world
+        self.reads_time = False  # whether the nodes read the frame or the time
         self.material_index = 0  # of the owner; 0 if the owner is no material
         self.normal = (0.0, 0.0, 0.0)  # the bumped normal of the whole material; (0, 0, 0) is the shading normal
         self.walker = Walker()

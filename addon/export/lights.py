@@ -27,6 +27,7 @@ class LampNodes(NamedTuple):
     nodes: tuple = ()
     objects: frozenset = frozenset()  # as those of a material
     reads_layer: bool = False
+    reads_time: bool = False
 
 
 def export_lamp_nodes(thing, messages, images, depsgraph=None, value=None):
@@ -39,7 +40,7 @@ def export_lamp_nodes(thing, messages, images, depsgraph=None, value=None):
     emission = emission_of(graph, graph.tree_of(light), "OUTPUT_LIGHT")
     # Nodes of which no output is left cost nothing.
     nodes = graph.nodes if isinstance(emission, NodeRef) else ()
-    return LampNodes(emission, nodes, frozenset(graph.objects), graph.reads_layer)
+    return LampNodes(emission, nodes, frozenset(graph.objects), graph.reads_layer, graph.reads_time)
 
 
 def export_light(thing, matrix_world, messages, depsgraph=None, hidden=None, shine=None):

@@ -33,6 +33,7 @@ class _Exported(NamedTuple):
     attributes: frozenset = frozenset()  # names of the mesh attributes that it reads
     objects: frozenset = frozenset()  # identities of the objects whose transform it reads
     reads_layer: bool = False  # see NodeGraph
+    reads_time: bool = False
 
 
 class Materials:
@@ -118,7 +119,7 @@ def _export(material, messages, asker, images, depsgraph):
     common["flags"] |= values.pop("flags", 0)
     common["ambient"] = _color(graph.add(common["ambient"], values.pop("ambient", 0.0)))
     exported = snapshot.Material(nodes=graph.nodes, **values, **common)
-    return _Exported(exported, frozenset(graph.attributes), frozenset(graph.objects), graph.reads_layer)
+    return _Exported(exported, frozenset(graph.attributes), frozenset(graph.objects), graph.reads_layer, graph.reads_time)
 
 
 def _flags(material):

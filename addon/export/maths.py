@@ -27,7 +27,7 @@ def _constant_vector(graph, site, output):
 
 def _scene_time(graph, site, output):
     """Return the frame or its time in seconds: a property of the scene, and the same for all samples."""
-    graph.reads_layer = True
+    graph.reads_layer = graph.reads_time = True
     if graph.depsgraph is None:
         return 0.0
     scene = graph.depsgraph.scene_eval

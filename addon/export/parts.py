@@ -141,9 +141,9 @@ class Parts:
             asked, told, known = _Asked(self.images), Messages(), len(self.images.list)
             exported = read(told, asked)
             self.count("images", len(self.images.list) - known)
-            found = _Shader(
-                frozenset(owners), exported, told, frozenset(asked.pictures), frozenset(asked.numbers_used), asked.with_time
-            )
+            with_time = asked.with_time or exported.reads_time
+            pictures, numbers = frozenset(asked.pictures), frozenset(asked.numbers_used)
+            found = _Shader(frozenset(owners), exported, told, pictures, numbers, with_time)
         self._used_shaders[key] = found
         messages.merge(found.messages)
         return found.exported

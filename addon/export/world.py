@@ -23,6 +23,7 @@ class Sky(NamedTuple):
     world: snapshot.World
     objects: frozenset = frozenset()  # identities of the objects whose transform its nodes read
     reads_layer: bool = False  # see NodeGraph
+    reads_time: bool = False
 
 
 def export_world(world, images, depsgraph, messages):
@@ -71,7 +72,7 @@ def export_world(world, images, depsgraph, messages):
         hidden_from=hidden,
         map_resolution=cycles.sample_map_resolution if method == "MANUAL" else 0,
     )
-    return Sky(sky, frozenset(graph.objects), graph.reads_layer)
+    return Sky(sky, frozenset(graph.objects), graph.reads_layer, graph.reads_time)
 
 
 def _nodes(world, graph, who, messages):
