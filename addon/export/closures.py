@@ -168,6 +168,8 @@ CLOSURES = {
     "BSDF_TRANSPARENT": _transparent,
     "BSDF_VELVET": _sheen,
     "CUSTOM GROUP": read_group,
+    # The type of Diffuse BSDF in Blender 4.4 alone.
+    "DIFFUSE_BSDF": _diffuse,
     "EMISSION": _emission,
     "GROUP": read_group,
     "HOLDOUT": _holdout,

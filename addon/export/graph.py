@@ -47,7 +47,8 @@ class NodeGraph(NodeBuilder):
         self.reads_time = False  # whether the nodes read the frame or the time
         self.material_index = 0  # of the owner; 0 if the owner is no material
         self.normal = (0.0, 0.0, 0.0)  # the bumped normal of the whole material; (0, 0, 0) is the shading normal
-        self.walker = Walker()
+        self._ignored = set()
+        self.walker = Walker(_has_scripts(depsgraph), self._tell_ignored)
         self._tree = None  # the ShaderTree that is read
         self._active = set()
         self._is_ahead = False
@@ -62,6 +63,15 @@ class NodeGraph(NodeBuilder):
 
     def _name(self, node):
         return node.name if self._tree is None else self._tree.name(node)
+
+    def _tell_ignored(self, site):
+        is_script = site.node.type == "SCRIPT"
+        # The scene decides whether scripts run.
+        self.reads_layer = self.reads_layer or is_script
+        if site.key not in self._ignored:
+            self._ignored.add(site.key)
+            when = " without Open Shading Language" if is_script else ""
+            self.tell(site, f"{site.node.bl_label} has no effect{when}, as in Cycles", "", Severity.HINT)
 
     def tell(self, site, text, key=None, severity=Severity.DIFFERENT):
         """Add a message that names the node. key: of Messages.add; None counts the node's type as missing, "" nothing."""
@@ -205,6 +215,11 @@ class NodeGraph(NodeBuilder):
         if target in _SCALARS and source not in _SCALARS:
             return self.grey(value) if source == "RGBA" else self.vector_op(VectorOperation.DOT_PRODUCT, value, THIRDS)
         return in_three(value) if target not in _SCALARS else value
+
+
+def _has_scripts(depsgraph):
+    """Whether Cycles runs Script nodes. Cycles is an add-on and may be disabled."""
+    return depsgraph is not None and getattr(getattr(depsgraph.scene, "cycles", None), "shading_system", False)
 
 
 def _site(node):

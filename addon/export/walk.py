@@ -10,6 +10,8 @@ from .course_models import model_of
 _LOOSE_ENDS_ARE_ZERO = bpy.app.version < (5, 0)
 # CUSTOM GROUP is a node of an add-on with a tree of its own.
 GROUPS = {"GROUP", "CUSTOM GROUP"}
+# Nodes that Cycles does not know: it leaves out their links.
+_IGNORED = {"EEVEE_SPECULAR", "SHADERTORGB", "SQUEEZE"}
 _LONGEST = 10000  # hops: ends the walk in a cycle of reroutes
 
 
@@ -41,11 +43,14 @@ class Origin:
 class Walker:
     """Caches the links of each tree, which Blender would search for every socket."""
 
-    def __init__(self):
+    def __init__(self, has_scripts, ignore):
+        """has_scripts: whether Cycles runs scripts. ignore(site) is called for each link from a node that Cycles ignores."""
         self._links = {}
+        self._ignored = _IGNORED if has_scripts else _IGNORED | {"SCRIPT"}
+        self._ignore = ignore
 
     def origin(self, site, socket):
-        path, types = site.path, [socket.type]
+        asked, path, types = socket, site.path, [socket.type]
         constant, depth = socket, 1
         for _ in range(_LONGEST):
             link = self._link(socket)
@@ -60,6 +65,11 @@ class Walker:
                     constant, depth = None, len(types)
             elif node.type == "GROUP_INPUT" and path:
                 onward, path = _by_identifier(path[-1].inputs, output.identifier), path[:-1]
+            elif node.type in self._ignored:
+                self._ignore(Site(node, path))
+                if not _LOOSE_ENDS_ARE_ZERO:
+                    constant, depth = asked, 1
+                break
             else:
                 return Origin(Site(node, path), output, None, tuple(types))
             if onward is None:

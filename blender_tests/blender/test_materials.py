@@ -145,7 +145,7 @@ KINDS = {
     "BsdfTranslucent": "TRANSLUCENT",
     "BsdfVelvet": "SHEEN",
 }
-STAND_INS = ("BsdfHair", "BsdfHairPrincipled", "BsdfToon", "EeveeSpecular", "SubsurfaceScattering")
+STAND_INS = ("BsdfHair", "BsdfHairPrincipled", "BsdfToon", "SubsurfaceScattering")
 
 
 def test_every_closure_of_this_blender(case):

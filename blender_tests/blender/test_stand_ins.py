@@ -88,3 +88,12 @@ def test_what_stands_beside_transparent(which, tmp_path):
     # The weight stays separate: rough diffuse is not linear in its colour.
     (clay,) = got["clay"]["lobes"]
     assert clay["color"] == pytest.approx([0.5, 0.25, 0.125]) and clay["weight"] == pytest.approx([0.5] * 3)
+
+
+@pytest.mark.parametrize("which", [MODULE, PROGRAM])
+def test_scripts_have_no_effect_where_cycles_runs_none(which, tmp_path):
+    got = blenders.run(which, tmp_path, "stand_in_cases", "scripts")
+    (ignored, (hint,)), (unknown, (message,)) = got["False"], got["True"]
+    assert ignored == pytest.approx([0.9, 0.3, 0.1]) and unknown == [0.5] * 3
+    assert hint.endswith("node 'Script': Script has no effect without Open Shading Language, as in Cycles")
+    assert "is linked to 'Script' (Script), which is not supported, mid-grey is used" in message

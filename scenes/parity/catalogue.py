@@ -23,6 +23,7 @@ SUBJECTS = (
     "inputs_instances",
     "inputs_places",
     "zones",
+    "left_out",
     "textures_normals",
     "textures_computed",
     "textures_patterns",

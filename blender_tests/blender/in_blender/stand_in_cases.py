@@ -159,3 +159,21 @@ def facets():
         tree.show(tree.node(kind, distribution=distribution).outputs[0])
         result[kind] = answer(tree.material)[kind]["messages"]
     return result
+
+
+def scripts():
+    """Return {whether Cycles runs scripts: [emission, messages]} of a colour that a script gives."""
+    scene = stage.empty()
+    tree = Tree("scripted")
+    node = tree.node("Script", script=bpy.data.texts.new("script.osl"))
+    color = node.outputs.new("NodeSocketColor", "Color")
+    shown = tree.node("Emission", Color=(0.9, 0.3, 0.1))
+    tree.tree.links.new(color, shown.inputs["Color"])
+    stage.cube(1.0, tree.show(shown.outputs[0]))
+    stage.camera()
+    result = {}
+    for runs in (False, True):
+        scene.cycles.shading_system = runs
+        given, messages = export_told()
+        result[str(runs)] = [next(item for item in given.materials if item.name == "scripted").emission, list(messages)]
+    return result
