@@ -7,7 +7,7 @@ from mathutils import Color
 from ..bindings.enums import ColorModel, MathOperation, MixMode, NodeKind, VectorOperation
 from ..bindings.shading import NodeRef
 from .arithmetic import clamp, triple
-from .curves import ramp_by_table
+from .curves import constant_of_ramp, ramp_by_table
 from .maths import smooth_step
 
 _MODELS = {"HSV": (ColorModel.TO_HSV, ColorModel.FROM_HSV), "HSL": (ColorModel.TO_HSL, ColorModel.FROM_HSL)}
@@ -122,7 +122,7 @@ def _ramp(graph, site, output):
     factor = graph.input(site, node.inputs[0])
     is_alpha = output.identifier == "Alpha"
     if not isinstance(factor, NodeRef):
-        color = tuple(ramp.evaluate(clamp(factor)))
+        color = constant_of_ramp(ramp, clamp(factor))
         return color[3] if is_alpha else color[:3]
     if ramp.color_mode != "RGB" or ramp.interpolation not in ("LINEAR", "CONSTANT", "EASE"):
         return ramp_by_table(graph, ramp, factor, is_alpha)

@@ -3,9 +3,10 @@
 import bpy
 import numpy as np
 
-from ..bindings.enums import NodeKind
+from ..bindings.enums import MixMode, NodeKind
 from ..bindings.shading import NodeRef
-from .arithmetic import mix
+from .arithmetic import clamp, mix
+from .sockets import EVALUATES_CONSTANTS
 
 _STEPS = 256
 # Number of values: before 4.0, the number of steps; since then one more, so that the last value is at the end of the last step.
@@ -42,7 +43,8 @@ def _rgb(graph, site, output):
     functions = [lambda x, c=c: mapping.evaluate(c, mapping.evaluate(combined, x)) for c in channels]
     if isinstance(color, NodeRef):
         return _curved(graph, mapping, functions, mapping.curves[:4], factor, color)
-    return graph.mix(factor, color, tuple(float(function(x)) for function, x in zip(functions, color, strict=True)))
+    curved = tuple(float(function(x)) for function, x in zip(functions, color, strict=True))
+    return graph.emit(NodeKind.MIX, factor, color, curved, option=MixMode.MIX)
 
 
 def _vector(graph, site, output):
@@ -63,7 +65,10 @@ def _number(graph, site, output):
 
     if isinstance(value, NodeRef) or isinstance(factor, NodeRef):
         return _curved(graph, mapping, [function], mapping.curves[:1], factor, value)
-    return mix(factor, value, float(function(value)))
+    curved = float(function(value))
+    if EVALUATES_CONSTANTS and mapping.use_clip:
+        curved = clamp(curved, mapping.clip_min_y, mapping.clip_max_y)
+    return mix(factor, value, curved)
 
 
 def ramp_by_table(graph, ramp, factor, is_alpha):
@@ -76,6 +81,19 @@ def ramp_by_table(graph, ramp, factor, is_alpha):
         NodeKind.CURVES, 1.0, factor, option=_OF_NUMBER, image=graph.table(table), image_count=1, flags=flags, matrix=matrix
     )
     return graph.emit(NodeKind.ALPHA, value) if is_alpha else value
+
+
+def constant_of_ramp(ramp, place):
+    """Return the colour and alpha of a ramp at a constant place: before 5.0 by Cycles' table."""
+    if EVALUATES_CONSTANTS:
+        return tuple(ramp.evaluate(place))
+    last = _VALUES - 1
+    number = min(int(place * last), last)
+    first = tuple(ramp.evaluate(number / last))
+    if ramp.interpolation == "CONSTANT" or number == last:
+        return first
+    second = ramp.evaluate((number + 1) / last)
+    return tuple(mix(place * last - number, x, y) for x, y in zip(first, second, strict=True))
 
 
 READERS = {"CURVE_FLOAT": _number, "CURVE_RGB": _rgb, "CURVE_VEC": _vector}

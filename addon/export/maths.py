@@ -4,6 +4,7 @@ from mathutils import Euler, Matrix, Vector
 
 from ..bindings.enums import MathOperation, NodeKind, VectorOperation
 from ..bindings.shading import NodeRef
+from .sockets import EVALUATES_CONSTANTS
 
 # Operations on vectors that apply an operation on numbers to each channel.
 _PER_CHANNEL = {name: MathOperation[name] for name in ("POWER", "ROUND", "SIGN", "WRAP")}
@@ -76,8 +77,7 @@ def _refract(graph, incident, normal, eta):
 def _clamp(graph, site, output):
     value, low, high = (graph.input(site, socket) for socket in site.node.inputs[:3])
     if site.node.clamp_type == "RANGE":
-        m = MathOperation
-        low, high = graph.op(m.MINIMUM, low, high), graph.op(m.MAXIMUM, low, high)
+        return _in_range(graph, value, low, high)
     return graph.emit(NodeKind.CLAMP, value, low, high)
 
 
@@ -86,31 +86,54 @@ def _map_range(graph, site, output):
     if getattr(node, "data_type", "FLOAT") == "FLOAT":
         names = ("Value", "From Min", "From Max", "To Min", "To Max", "Steps")
         values = [graph.value(site, name) if name != "Steps" or node.interpolation_type == "STEPPED" else 4.0 for name in names]
-        if not isinstance(values[1], NodeRef) and values[1] == values[2]:
-            return 0.0
-        return _mapped(graph, node, values)
+        if _is_evaluated(values):
+            return _mapped(graph, node, values, True)
+        _, start, end, *to, _ = values
+        if not isinstance(start, NodeRef) and start == end:
+            return _in_range(graph, 0.0, *to) if node.clamp else 0.0
+        result = _mapped(graph, node, values)
+        if not isinstance(start, NodeRef) and not isinstance(end, NodeRef):
+            return result
+        # Cycles gives 0 where the range is empty.
+        m = MathOperation
+        differs = graph.op(m.ADD, graph.op(m.LESS_THAN, start, end), graph.op(m.GREATER_THAN, start, end))
+        result = graph.op(m.MULTIPLY, result, differs)
+        return _in_range(graph, result, *to) if node.clamp else result
     names = ("Vector", "From_Min_FLOAT3", "From_Max_FLOAT3", "To_Min_FLOAT3", "To_Max_FLOAT3", "Steps_FLOAT3")
     values = [
         graph.value(site, name) if name != names[-1] or node.interpolation_type == "STEPPED" else (4.0,) * 3 for name in names
     ]
-    return graph.combine(*(_mapped(graph, node, [graph.component(value, i) for value in values]) for i in range(3)))
+    evaluated = _is_evaluated(values)
+    channels = ([graph.component(value, i) for value in values] for i in range(3))
+    return graph.combine(*(_mapped(graph, node, numbers, evaluated) for numbers in channels))
 
 
-def _mapped(graph, node, values):
+def _is_evaluated(values):
+    """Whether Blender evaluates a node of these inputs, before Cycles reads it."""
+    return EVALUATES_CONSTANTS and not any(isinstance(value, NodeRef) for value in values)
+
+
+def _mapped(graph, node, values, evaluated=False):
+    """Return a mapped number. evaluated: by Blender, which also divides by a negative number of steps."""
     m = MathOperation
     value, from_low, from_high, to_low, to_high, steps = values
     kind = node.interpolation_type
     t = graph.op(m.DIVIDE, graph.op(m.SUBTRACT, value, from_low), graph.op(m.SUBTRACT, from_high, from_low))
     if kind == "STEPPED":
         reached = graph.op(m.FLOOR, graph.op(m.MULTIPLY, t, graph.op(m.ADD, steps, 1.0)))
-        t = graph.op(m.MULTIPLY, graph.op(m.DIVIDE, reached, steps), graph.op(m.GREATER_THAN, steps, 0.0))
+        t = graph.op(m.DIVIDE, reached, steps)
+        if not evaluated:
+            t = graph.op(m.MULTIPLY, t, graph.op(m.GREATER_THAN, steps, 0.0))
     elif kind in ("SMOOTHSTEP", "SMOOTHERSTEP"):
         t = smooth_step(graph, graph.emit(NodeKind.CLAMP, t, 0.0, 1.0), kind == "SMOOTHERSTEP")
     result = graph.op(m.MULTIPLY_ADD, t, graph.op(m.SUBTRACT, to_high, to_low), to_low)
-    if node.clamp and kind in ("LINEAR", "STEPPED"):
-        low, high = graph.op(m.MINIMUM, to_low, to_high), graph.op(m.MAXIMUM, to_low, to_high)
-        result = graph.emit(NodeKind.CLAMP, result, low, high)
-    return result
+    return _in_range(graph, result, to_low, to_high) if node.clamp and kind in ("LINEAR", "STEPPED") else result
+
+
+def _in_range(graph, value, first, last):
+    """Clamp a number between two limits in any order."""
+    low, high = graph.op(MathOperation.MINIMUM, first, last), graph.op(MathOperation.MAXIMUM, first, last)
+    return graph.emit(NodeKind.CLAMP, value, low, high)
 
 
 def smooth_step(graph, t, twice=False):

@@ -11,6 +11,8 @@ _SINCE = {
 RULES = next(rules for version, rules in _SINCE.items() if bpy.app.version >= version)
 # Option of DIFFUSE and of the Principled BSDF: before 4.3 Blender's rough diffuse surface loses light.
 DIFFUSE_OPTION = int(bpy.app.version >= (4, 3))
+# From 5.0 on Blender itself evaluates nodes of constant inputs, before Cycles reads them.
+EVALUATES_CONSTANTS = bpy.app.version >= (5, 0)
 SMALLEST_IOR = 1e-5  # Cycles clamps to it
 
 _MUTED_OUTPUTS_ARE_OFF = bpy.app.version < (5, 0)

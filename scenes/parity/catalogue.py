@@ -24,6 +24,7 @@ SUBJECTS = (
     "inputs_places",
     "zones",
     "left_out",
+    "settings_of_nodes",
     "textures_normals",
     "textures_computed",
     "textures_patterns",
