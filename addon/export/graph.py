@@ -30,6 +30,8 @@ _VECTORS = {"VECTOR", "ROTATION"}
 _DEEPEST = 150  # depth of recursion in nodes; each node takes several of Python's 1000 nested calls
 _STRIDE = 100  # depth in nodes at which _look_ahead computes and caches a value
 _CONVERTS_ENDS_ONLY = bpy.app.version >= (5, 0)
+# From 5.0 on the constant of a group's socket counts as linked to the inputs that it reaches.
+_LINKS_CONSTANTS = bpy.app.version >= (5, 0)
 
 
 class NodeGraph(NodeBuilder):
@@ -107,13 +109,22 @@ class NodeGraph(NodeBuilder):
     def is_linked(self, site, names):
         site = _site(site)
         socket = find(site.node, names)
-        return socket is not None and self.walker.origin(site, socket).site is not None
+        if socket is None:
+            return False
+        origin = self.walker.origin(site, socket)
+        return origin.site is not None or _gives_constant(origin, socket)
 
-    def linked(self, site, names, default):
-        """Return the value linked to an input; default if no link with a supported source reaches the input."""
+    def linked(self, site, names, default, evaluated=False):
+        """Return the value linked to an input; default if no link with a supported source reaches the input.
+
+        evaluated: whether Blender 5 evaluates the node if all its inputs are constant.
+        """
         site = _site(site)
         socket = find(site.node, names)
         origin = None if socket is None else self.walker.origin(site, socket)
+        if origin is not None and origin.site is None:
+            if _gives_constant(origin, socket) or evaluated and self._is_evaluated(site, origin, socket):
+                return self.input(site, socket)
         if origin is None or origin.site is None:
             return default
         if self._output(origin.site, origin.output) is None:
@@ -123,6 +134,13 @@ class NodeGraph(NodeBuilder):
             )
             return default
         return self.input(site, socket)
+
+    def _is_evaluated(self, site, origin, socket):
+        """Whether Blender evaluates a node: a group's constant reaches an input, and the others are constant."""
+        if not _reaches(origin, socket):
+            return False
+        others = (other for other in site.node.inputs if other.enabled and other != socket)
+        return not any(isinstance(self._read(site, other), NodeRef) for other in others)
 
     def input(self, site, socket):
         """Return the value that reaches a socket; a constant that is not finite becomes 0, with a message."""
@@ -215,6 +233,17 @@ class NodeGraph(NodeBuilder):
         if target in _SCALARS and source not in _SCALARS:
             return self.grey(value) if source == "RGBA" else self.vector_op(VectorOperation.DOT_PRODUCT, value, THIRDS)
         return in_three(value) if target not in _SCALARS else value
+
+
+def _gives_constant(origin, socket):
+    """Whether the constant of a group's socket takes the place of an input's default; not if both hide their vectors."""
+    given = origin.socket
+    return _reaches(origin, socket) and not (given.type == "VECTOR" and given.hide_value and socket.hide_value)
+
+
+def _reaches(origin, socket):
+    """Whether the constant of a group's socket reaches an input as a link."""
+    return _LINKS_CONSTANTS and origin.socket not in (None, socket) and hasattr(origin.socket, "default_value")
 
 
 def _has_scripts(depsgraph):

@@ -24,7 +24,7 @@ def _ies_texture(graph, site, output):
     table = _table(graph, site)
     if table is None:
         return graph.op(MathOperation.MULTIPLY, strength, _OF_NO_FILE)
-    vector = graph.linked(site, ("Vector",), None)
+    vector = graph.linked(site, ("Vector",), None, evaluated=True)
     if vector is None:
         vector = _seen_from(graph)
     return graph.emit(NodeKind.IES, vector, strength, image=graph.grid(table[:, :, None]), image_count=1)

@@ -15,6 +15,7 @@ _INVERTED, _UNDISPLACED, _FLAT_BEFORE = 1, 2, 4  # flags of BUMP
 # Flag of NORMAL_MAP: from Blender 5.2 on the interpolated normal is normalised first.
 _UNIT_NORMAL = 1 if bpy.app.version >= (5, 2) else 0
 _WHOLE_PIXEL = 1.0  # the filter width in versions whose Bump node has no input for it
+_GRAZING = 1.0  # the result of Fresnel and Layer Weight at a right angle
 _ORIGIN = (0.0, 0.0, 0.0)
 _AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 _OBJECT, _WORLD = 0, 1  # the space of a displacement's length
@@ -70,13 +71,20 @@ def bump(graph, first, height, strength, distance, normal, width, invert=False, 
 
 
 def _fresnel(graph, site, output):
-    return graph.emit(NodeKind.FRESNEL, graph.value(site, "IOR"), graph.linked(site, ("Normal",), graph.normal))
+    normal = _against_view(graph, site)
+    return _GRAZING if normal is None else graph.emit(NodeKind.FRESNEL, graph.value(site, "IOR"), normal)
 
 
 def _layer_weight(graph, site, output):
     option = _FRESNEL if output.identifier == "Fresnel" else _FACING
-    blend, normal = graph.value(site, "Blend"), graph.linked(site, ("Normal",), graph.normal)
-    return graph.emit(NodeKind.LAYER_WEIGHT, blend, normal, option=option)
+    normal = _against_view(graph, site)
+    return _GRAZING if normal is None else graph.emit(NodeKind.LAYER_WEIGHT, graph.value(site, "Blend"), normal, option=option)
+
+
+def _against_view(graph, site):
+    """Return the normal that is compared with the view; None if 0 is linked, which makes a right angle with any direction."""
+    normal = graph.linked(site, ("Normal",), None)
+    return graph.normal if normal is None else None if is_constant(normal, 0.0) else normal
 
 
 def _bevel(graph, site, output):

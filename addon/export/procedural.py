@@ -29,7 +29,7 @@ _LEAST = 1e-5  # lower limit of the Musgrave Texture's dimension and lacunarity
 
 def mapped_vector(graph, site):
     """Return a texture's coordinates, Generated without a link, through the mapping that the node itself stores."""
-    vector = graph.linked(site, ("Vector",), None)
+    vector = graph.linked(site, ("Vector",), None, evaluated=True)
     if vector is None:
         vector = coordinate(graph, Coordinate.GENERATED)
     if _MAPS_LINKS_ONLY and not isinstance(vector, NodeRef):
