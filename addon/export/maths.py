@@ -2,10 +2,11 @@
 
 from mathutils import Euler, Matrix, Vector
 
-from ..bindings.enums import MathOperation, NodeKind, VectorOperation
+from ..bindings.enums import MappingType, MathOperation, NodeKind, VectorOperation
 from ..bindings.shading import NodeRef
 from .sockets import EVALUATES_CONSTANTS
 
+_AXES = {"X": (1.0, 0.0, 0.0), "Y": (0.0, 1.0, 0.0), "Z": (0.0, 0.0, 1.0)}
 # Operations on vectors that apply an operation on numbers to each channel.
 _PER_CHANNEL = {name: MathOperation[name] for name in ("POWER", "ROUND", "SIGN", "WRAP")}
 
@@ -163,25 +164,46 @@ def _normal(graph, site, output):
 
 
 def _rotate(graph, site, output):
-    """Return the rotated vector, by a constant matrix; None if centre, axis or angle are not constant."""
     node = site.node
     vector, center = graph.value(site, "Vector"), graph.value(site, "Center")
     if node.rotation_type == "EULER_XYZ":
-        turn = graph.value(site, "Rotation")
-        rows = None if isinstance(turn, NodeRef) else Euler(turn).to_matrix()
+        turn = (graph.value(site, "Rotation"),)
+        rows = None if isinstance(turn[0], NodeRef) else Euler(turn[0]).to_matrix()
     else:
         angle = graph.value(site, "Angle")
-        axis = graph.value(site, "Axis") if node.rotation_type == "AXIS_ANGLE" else node.rotation_type[0]
-        if isinstance(angle, NodeRef) or isinstance(axis, NodeRef):
-            rows = None
-        else:
-            rows = Matrix.Rotation(angle, 3, axis) if isinstance(axis, str) or any(axis) else Matrix.Identity(3)
+        axis = graph.value(site, "Axis") if node.rotation_type == "AXIS_ANGLE" else _AXES[node.rotation_type[0]]
+        turn = axis, graph.op(MathOperation.MULTIPLY, angle, -1.0) if node.invert else angle
+        rows = None
+        if not isinstance(angle, NodeRef) and not isinstance(axis, NodeRef):
+            rows = Matrix.Rotation(angle, 3, axis) if any(axis) else Matrix.Identity(3)
+    v = VectorOperation
     if rows is None or isinstance(center, NodeRef):
-        return None
+        arm = graph.vector_op(v.SUBTRACT, vector, center)
+        turned = _turned(graph, arm, *turn) if len(turn) == 2 else _turned_by_angles(graph, arm, *turn, node.invert)
+        return graph.vector_op(v.ADD, turned, center)
     if node.invert:
         rows.transpose()
     moved = [center[i] - sum(rows[i][k] * center[k] for k in range(3)) for i in range(3)]
     return transformed(graph, vector, [(*rows[i], moved[i]) for i in range(3)])
+
+
+def _turned_by_angles(graph, vector, angles, invert):
+    """Return a vector rotated around x, y and z, or back."""
+    kind = MappingType.TEXTURE if invert else MappingType.POINT
+    return graph.emit(NodeKind.MAPPING, vector, (0.0,) * 3, angles, (1.0,) * 3, option=kind)
+
+
+def _turned(graph, vector, axis, angle):
+    """Return v cos a + (k x v) sin a + k (k.v) (1 - cos a) of the unit axis k; v if the axis is 0."""
+    m, v = MathOperation, VectorOperation
+    length = graph.vector_op(v.LENGTH, axis)
+    angle = graph.op(m.MULTIPLY, angle, graph.op(m.GREATER_THAN, length, 0.0))
+    unit = graph.vector_op(v.NORMALIZE, axis)
+    cosine = graph.op(m.COSINE, angle)
+    along = graph.op(m.MULTIPLY, graph.vector_op(v.DOT_PRODUCT, unit, vector), graph.op(m.SUBTRACT, 1.0, cosine))
+    across = graph.vector_op(v.SCALE, graph.vector_op(v.CROSS_PRODUCT, unit, vector), scale=graph.op(m.SINE, angle))
+    kept = graph.vector_op(v.ADD, graph.vector_op(v.SCALE, vector, scale=cosine), across)
+    return graph.vector_op(v.ADD, kept, graph.vector_op(v.SCALE, unit, scale=along))
 
 
 def transformed(graph, vector, rows):

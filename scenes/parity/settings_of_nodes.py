@@ -331,6 +331,38 @@ def _curved_colors(kind, factor):
     return value
 
 
+def _turned_by(mode, invert, *linked):
+    """A rotation whose inputs of these names vary, and whose vector does if there are none."""
+
+    def value(nodes):
+        color, other, factor = _colors(nodes)
+        given = {"Center": color, "Axis": other, "Angle": factor, "Rotation": color}
+        inputs = {name: given[name] if name in linked else x for name, x in _TURNED.items()}
+        return _turned(mode, invert, Vector=(0.5, -0.3, 0.8) if linked else color, **inputs)(nodes)
+
+    return value
+
+
+def _zero_axis(nodes):
+    zero = nodes.add("ShaderNodeVectorMath", _colors(nodes)[0], (0.0, 0.0, 0.0), props={"operation": "MULTIPLY"})
+    return _turned("AXIS_ANGLE", False, Vector=(0.5, -0.3, 0.8), **{**_TURNED, "Axis": zero})(nodes)
+
+
+_LINKED = {mode: ("Angle", "Center") for mode in _TURNS[1:4]}
+_LINKED |= {"AXIS_ANGLE": ("Angle", "Axis", "Center"), "EULER_XYZ": ("Rotation", "Center")}
+_ROTATIONS = [
+    *(_turned_by(mode, invert, name) for mode in _TURNS for invert in _SWITCH for name in _LINKED[mode]),
+    *(_turned_by(mode, invert, *names) for mode in _TURNS for invert in _SWITCH for names in (_LINKED[mode], ())),
+    _zero_axis,
+]
+
+
+@case(size=size_of(len(_ROTATIONS)), bounces=0, quick=True)
+def varying_rotations(scene):
+    """Vector Rotate of each type with inputs that vary, one at a time and together, and an axis of 0."""
+    _board(scene, _ROTATIONS)
+
+
 _VARYING = [
     _curved_colors(f"ShaderNode{kind}Curve", factor) for kind in ("RGB", "Vector", "Float") for factor in (1.0, 0.6, 1.4, None)
 ]
