@@ -173,6 +173,35 @@ def displacement(scene, method):
     camera(scene, (0.2, -2.4, 2.6), (0, 0.05, 0))
 
 
+@variants(
+    values={
+        f"{space.lower()}_{name}": (space, method)
+        for space in ("TANGENT", "OBJECT", "WORLD")
+        for name, method in (("true", "DISPLACEMENT"), ("both", "BOTH"), ("bump", "BUMP"))
+    }
+)
+def vector_displacement(scene, given):
+    """Hills that lean, of a grid that is turned and scaled."""
+    space, method = given
+
+    def build(nodes):
+        picture = nodes.add("ShaderNodeTexImage", props={"image": _heights(0.06)})
+        height = nodes.add("ShaderNodeSeparateXYZ", picture.outputs["Color"]).outputs[0]
+        lean = nodes.add("ShaderNodeMath", height, 0.4, props={"operation": "MULTIPLY"}).outputs[0]
+        parts_of_it = (lean, height, 0.1) if space == "TANGENT" else (lean, 0.1, height)
+        vector = nodes.add("ShaderNodeCombineXYZ", *parts_of_it)
+        props = {"space": space}
+        offset = nodes.add("ShaderNodeVectorDisplacement", Vector=vector, Midlevel=0.1, Scale=0.4, props=props)
+        return nodes.add("ShaderNodeBsdfDiffuse", Color=(0.8, 0.7, 0.6)), offset
+
+    surface = material(build)
+    _displace(surface, method)
+    parts.place(scene, "Grid", _grid(24, 3.0), surface, rotation=(0.15, 0.1, 0.3), scale=(1.0, 0.8, 1.2))
+    lamp(scene)
+    sky(scene)
+    camera(scene, (0.2, -2.4, 2.6), (0, 0.05, 0))
+
+
 def _grid(count, size):
     def make(bm):
         bmesh.ops.create_grid(bm, x_segments=count, y_segments=count, size=size / 2)
