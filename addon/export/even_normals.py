@@ -54,7 +54,8 @@ def _is_displaced(table, row, materials):
 def _are_uneven(matrices):
     """Of (n, 3, 3), without those that are flat."""
     lengths = np.linalg.svd(matrices, compute_uv=False)
-    return (lengths[:, 2] > 0.0) & (lengths[:, 0] > lengths[:, 2] * (1.0 + _EVEN))
+    # A turned matrix of single precision with a scale of 0 is flat up to its rounding.
+    return (lengths[:, 2] > lengths[:, 0] * 2.0**-23) & (lengths[:, 0] > lengths[:, 2] * (1.0 + _EVEN))
 
 
 def _divided(normals, matrix):
