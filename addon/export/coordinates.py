@@ -190,6 +190,9 @@ def _property(graph, node, output):
 
 def _vertex_color(graph, site, output):
     name = site.node.layer_name
+    # A name that Cycles computes an attribute for hides a mesh's own one, and is no colour.
+    if name in (ISLANDS, POINTINESS):
+        return 0.0 if output.identifier == "Alpha" else (0.0, 0.0, 0.0)
     if output.identifier != "Alpha":
         return named_value(graph, name)
     return graph.emit(NodeKind.ALPHA, named_value(graph, name)) if name else _render_alpha(graph)

@@ -207,3 +207,67 @@ def image_gaps_held(scene):
 def image_gaps_half(scene):
     """As files of half precision store them: before Blender 5.2 numbers of up to 98304."""
     _set_pictures(scene, ("EXR 16",), (1, 3, 4), _NUMBERS)
+
+
+def _relief(joined=True, loose=False, cuts=6):
+    """A square with hills and dales, in one piece or of strips that meet in equal vertices."""
+    mesh = bpy.data.meshes.new("Relief")
+    points, faces, edges = [], [], []
+    width = cuts + 1
+    for strip in (range(width),) if joined else (range(0, cuts // 2 + 1), range(cuts // 2, width)):
+        start = len(points)
+        for row in strip:
+            heights = (0.1 * uneven(7 * row + column, 1)[0] for column in range(width))
+            points += [(row / cuts - 0.5, column / cuts - 0.5, height) for column, height in enumerate(heights)]
+        corners = [start + row * width + column for row in range(len(strip) - 1) for column in range(cuts)]
+        faces += [(i, i + width, i + width + 1, i + 1) for i in corners]
+    if loose:
+        end = len(points)
+        points += [(0.1, 0.1, 0.3), (0.2, 0.1, 0.4), (0.0, 0.0, 0.5)]
+        edges = [(24, end), (end, end + 1)]
+    mesh.from_pydata(points, edges, faces)
+    mesh.update()
+    return mesh
+
+
+def _islands():
+    """Squares of their own, whose edges are given in an order of no rule."""
+    mesh = bpy.data.meshes.new("Islands")
+    places = [(column / 4 - 0.5, row / 4 - 0.5) for row in range(4) for column in range(4)]
+    points = [(x + a, y + b, 0.0) for x, y in places for a, b in ((0, 0), (0.2, 0), (0.2, 0.2), (0, 0.2))]
+    faces = [tuple(4 * k + (j + k) % 4 for j in range(4)) for k in range(16)]
+    edges = [(4 * k + a, 4 * k + b) for k in range(15, -1, -1) for a, b in ((2, 3), (1, 0), (3, 0))]
+    mesh.from_pydata(points, edges, faces)
+    mesh.update()
+    return mesh
+
+
+_SHAPES = (_relief, lambda: _relief(False), lambda: _relief(True, True), lambda: _relief(cuts=2), _islands)
+_COMPUTED = (("Pointiness", "pointiness"), ("Random Per Island", "random_per_island"))
+
+
+def _sharpness(nodes):
+    """Pointiness, of which 0.44 is black and 0.56 white."""
+    output = nodes.add("ShaderNodeNewGeometry").outputs["Pointiness"]
+    return nodes.add("ShaderNodeMath", output, 8.0, -3.5, props={"operation": "MULTIPLY_ADD", "use_clamp": True}).outputs[0]
+
+
+@case(size=size_of(4), bounces=0, quick=True)
+def pointiness_of_seams(scene):
+    """Vertices of one place count as one."""
+    set_board(scene, [(_relief(joined, cuts=cuts), _sharpness) for cuts in (2, 4) for joined in (False, True)])
+
+
+@case(size=size_of(len(_SHAPES) * 12 + 2), bounces=0, quick=True)
+def computed_of_edges(scene):
+    """Pointiness and Random Per Island, by Geometry, Attribute and Color Attribute, of one and more pieces and loose edges."""
+    tiles = []
+    for make in _SHAPES:
+        mesh = make()
+        for output, name in _COMPUTED:
+            tiles.append((mesh, output_of("ShaderNodeNewGeometry", output)))
+            tiles += [(mesh, output_of(_ATTRIBUTE, shown, {"attribute_name": name})) for shown in _OUTPUTS]
+            tiles.append((mesh, output_of(_COLOR, "Color", {"layer_name": name})))
+    named = _painted(("pointiness", "FLOAT_COLOR", "CORNER"))
+    tiles += [(named, output_of(_COLOR, output, {"layer_name": "pointiness"})) for output in ("Color", "Alpha")]
+    set_board(scene, tiles)
