@@ -61,6 +61,7 @@ CORE_ENUMS = {
     "profile": "Profile",
     "wave": "Wave",
     "space": "Space",
+    "sky_model": "SkyModel",
     "coordinate": "Coordinate",
     "projection": "ImageProjection",
     "environment": "EnvironmentProjection",

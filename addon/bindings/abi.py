@@ -82,6 +82,7 @@ _CALLS = {
     "lancer_probe_lobes": (_u64, _u32, _Array, _Array, _u32, POINTER(_u32), _Array, _Array),
     "lancer_probe_node": (_u64, _u32, _u32, _u32, _Array, _Array),
     "lancer_evaluate_node": (POINTER(Node), _Array),
+    "lancer_compute_sky": (_u32, c_double, c_double, c_double, _Array, _Array, _Array),
     "lancer_probe_world": (_u64, _u32, _Array, _Array, _Array),
     "lancer_probe_microfacet": (_u32, _Array, _Array, _Array, _Array, _Array, _Array, _Array, _Array),
     "lancer_probe_light": (_u64, _u32, _u32, _Array, _Array, _Array),

@@ -8,6 +8,7 @@ from enum import IntEnum, IntFlag
 ABI_VERSION = 11
 MOST_NODES = 4096
 DEEPEST_RECURSION = 16
+SKY_WIDTH = 512
 
 
 class Status(IntEnum):
@@ -160,6 +161,17 @@ class NodeKind(IntEnum):
     WIREFRAME = 36
     VECTOR_TRANSFORM = 37
     IES = 38
+    SKY = 39
+
+
+class SkyModel(IntEnum):
+    """Models of the sky."""
+
+    PREETHAM = 0
+    HOSEK_WILKIE = 1
+    NISHITA = 2
+    SINGLE_SCATTERING = 3
+    MULTIPLE_SCATTERING = 4
 
 
 class Profile(IntEnum):

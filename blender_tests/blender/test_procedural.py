@@ -9,8 +9,8 @@ SIDE = 24
 SHARE = 0.999  # of the points are within a thousandth of the range of Cycles' values
 
 
-def _judged(which, folder, name, least):
-    got = blenders.run(which, folder, "procedural_cases", name, SIDE)
+def _judged(which, folder, name, least, cases="procedural_cases"):
+    got = blenders.run(which, folder, cases, name, SIDE)
     got.pop("console")
     assert len(got) >= least
     assert all(points == SIDE * SIDE for points, *_ in got.values())
@@ -42,3 +42,10 @@ def test_musgrave(tmp_path):
 def test_newer_nodes(name, least, tmp_path):
     """The nodes that Blender 3 does not have."""
     _judged(MODULE, tmp_path, name, least)
+
+
+@pytest.mark.parametrize("which", [MODULE, PROGRAM])
+@pytest.mark.parametrize("name, least", [("analytic", 40), ("scattering", 20), ("suns", 16)])
+def test_sky(which, name, least, tmp_path):
+    """The Sky Texture in all directions. Preetham's sky of a sun below the horizon is black in part."""
+    _judged(which, tmp_path, name, least, cases="sky_cases")

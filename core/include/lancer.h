@@ -296,7 +296,24 @@ enum lancer_node_kind {
    * radians; from the second row and texel on the intensities there, with one more row and column on each side, by which the
    * cubic interpolation of Catmull and Rom is continued. Returns strength times the intensity; outside the angles 0 */
   LANCER_NODE_IES = 38,
-  LANCER_NODE_COUNT = 39
+  /* The radiance of the sky, not negative. inputs: direction, in which z is up; option LANCER_SKY_*. image, of three
+   * floating-point channels, read as they are in memory, by option:
+   *   PREETHAM, HOSEK_WILKIE: one row of 11 texels: direction of the sun; radiance; nine coefficients of x, y, Y (PREETHAM,
+   *     five are used) or X, Y, Z. matrix[0 ... 8]: CIE XYZ to RGB.
+   *   others: RGB by azimuth from the one opposite the sun, and by elevation, as lancer_compute_sky. matrix[0 ... 2] and
+   *     [3 ... 5]: RGB of the lower and the upper rim of the sun's disc, [6 ... 8]: direction of the sun, [9]: its diameter in
+   *     radians, 0 = no disc, [10]: the elevation below which the ground hides the disc */
+  LANCER_NODE_SKY = 39,
+  LANCER_NODE_COUNT = 40
+};
+/* Models of the sky. NISHITA: the single scattering of Blender before 5.0. */
+enum lancer_sky_model {
+  LANCER_SKY_PREETHAM = 0,
+  LANCER_SKY_HOSEK_WILKIE,
+  LANCER_SKY_NISHITA,
+  LANCER_SKY_SINGLE_SCATTERING,
+  LANCER_SKY_MULTIPLE_SCATTERING,
+  LANCER_SKY_COUNT
 };
 enum lancer_profile { LANCER_PROFILE_SIN = 0, LANCER_PROFILE_SAW, LANCER_PROFILE_TRI, LANCER_PROFILE_COUNT };
 /* Bands across an axis, or rings around it. */
@@ -538,6 +555,16 @@ typedef struct lancer_node {
 /* Evaluates a node whose inputs are constants and that does not depend on the hit, as programs compute it: value (float[4]).
  * Any other node is a LANCER_ERROR_ARGUMENT. */
 LANCER_API lancer_status lancer_evaluate_node(const lancer_node *node, float *value);
+
+/* Computes the light that an atmosphere scatters, as CIE XYZ. model: NISHITA, SINGLE_SCATTERING or MULTIPLE_SCATTERING.
+ * elevation and diameter of the sun: radians; altitude: metres; densities: of air, aerosols and ozone, 1 = the Earth's. xyz:
+ * float[height][LANCER_SKY_WIDTH][3], height 128 for NISHITA, else 256. Columns go round from the azimuth opposite the sun.
+ * Rows go up: of NISHITA from the horizon to the zenith, the elevation growing with the square of the row; else from the nadir
+ * to the zenith, likewise on both sides of the horizon. rims: float[6], the radiance of the sun's disc at its lower and upper
+ * rim. */
+#define LANCER_SKY_WIDTH 512u
+LANCER_API lancer_status lancer_compute_sky(uint32_t model, double elevation, double diameter, double altitude,
+                                            const double *densities, float *xyz, float *rims);
 
 /* ---- materials -------------------------------------------------------------------------------------------------- */
 

@@ -1,8 +1,13 @@
 // The probes of the C interface: single queries of scenes and sessions.
+#include "nodes/sky_table.h"
 #include "objects.h"
 #include "render/probe.h"
 #include "render/session.h"
+#include "render/thread_pool.h"
 #include "sampling/sobol.h"
+
+#include <algorithm>
+#include <cmath>
 
 namespace {
 
@@ -87,6 +92,26 @@ lancer_status lancer_evaluate_node(const lancer_node *node, float *value) {
     require(node, "node");
     require(value, "value");
     evaluate_node(*node, value);
+    return LANCER_OK;
+  });
+}
+
+lancer_status lancer_compute_sky(uint32_t model, double elevation, double diameter, double altitude, const double *densities,
+                                 float *xyz, float *rims) {
+  return guard([&] {
+    require(densities, "sky: densities");
+    require(xyz, "sky: xyz");
+    require(rims, "sky: rims");
+    if (model < LANCER_SKY_NISHITA || model >= LANCER_SKY_COUNT)
+      bad_argument("sky: model " + std::to_string(model) + " has no atmosphere");
+    static_assert(LANCER_SKY_WIDTH == kSkyWidth);
+    const Atmosphere atmosphere{model, elevation, diameter, altitude, {densities[0], densities[1], densities[2]}};
+    for (const double number : {elevation, diameter, altitude, densities[0], densities[1], densities[2]})
+      if (!std::isfinite(number))
+        bad_argument("sky: a number is not finite");
+    if (diameter <= 0.0 || std::min({densities[0], densities[1], densities[2]}) < 0.0)
+      bad_argument("sky: the sun's diameter must be above 0, and no density below");
+    compute_sky(atmosphere, {ThreadPool::resolved(0)}, xyz, rims);
     return LANCER_OK;
   });
 }

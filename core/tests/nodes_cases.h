@@ -36,10 +36,10 @@ inline glm::vec3 any_direction(Random &random) {
 }
 
 inline constexpr uint32_t kFreeImages = 40, kTiles = kFreeImages, kSides = kTiles + 3, kTables = kSides + 6,
-                          kAngles = kTables + 3;
+                          kAngles = kTables + 3, kSkies = kAngles + 1;
 
 // A world of five instances (two meshes, three exact surfaces) and images of all forms: kFreeImages of any form, then 3 tiles,
-// then the 6 sides of a cube, then tables of curves of 1, 3 and 4 channels, then the light of a luminaire.
+// then the 6 sides of a cube, then tables of curves of 1, 3 and 4 channels, the light of a luminaire, and two tables of the sky.
 class NodeWorld {
 public:
   Description description;
@@ -79,6 +79,12 @@ public:
       add_image(description, image_of(values, 7, 1, channels));
     }
     add_luminaire(random);
+    for (const uint32_t rows : {1u, 6u}) {
+      std::vector<float> values(size_t(kSkyTexels) * rows * 3);
+      for (float &x : values)
+        x = uniform_number(random, -1.0f, 1.0f);
+      add_image(description, image_of(values, kSkyTexels, rows, 3));
+    }
     camera.to_world = description.geometry.instances[2].to_world;
   }
 
@@ -205,6 +211,12 @@ inline NodeCase make_case(Random &random, uint32_t kind, uint32_t option, uint32
     last.matrix[0] = -0.5f;
     last.matrix[1] = 1.25f;
   }
+  if (kind == LANCER_NODE_SKY) {
+    last.image = kSkies + (option > LANCER_SKY_HOSEK_WILKIE ? 1 : 0);
+    for (int k = 0; k < 3; ++k)
+      last.matrix[6 + k] = any_direction(random)[k];
+    last.matrix[9] = random() % 4 ? uniform_number(random, 0.0f, 3.0f) : 0.0f;
+  }
   if (kind == LANCER_NODE_BUMP) {
     const uint32_t places[] = {LANCER_COORDINATE_UV,       LANCER_COORDINATE_GENERATED, LANCER_COORDINATE_NORMAL,
                                LANCER_COORDINATE_POSITION, LANCER_COORDINATE_OBJECT,    LANCER_COORDINATE_PARAMETRIC};
@@ -273,6 +285,8 @@ inline std::vector<NodeCase> all_cases(Random &random) {
   options(LANCER_NODE_GAMMA, 1);
   options(LANCER_NODE_INVERT, 1);
   options(LANCER_NODE_COLOR_MODEL, LANCER_COLOR_COUNT);
+  for (int i = 0; i < 8; ++i)
+    options(LANCER_NODE_SKY, LANCER_SKY_COUNT);
   options(LANCER_NODE_NOISE, LANCER_NOISE_COUNT, 64);
   for (uint32_t option = 0; option < LANCER_VORONOI_COUNT; ++option)
     for (uint32_t flags = random() % 7; flags < 512; flags += 7)

@@ -107,8 +107,11 @@ class Board:
             result[name] = [len(a), span, float((apart <= 1e-3).mean()), float(apart.max())]
         return result
 
+    def _snapshot(self):
+        return export()
+
     def _ours(self, places):
-        snapshot = export()
+        snapshot = self._snapshot()
         numbers = {material.name: number for number, material in enumerate(snapshot.materials)}
         with Scene.upload(snapshot) as scene:
             for name, uv in zip(self.names, places, strict=True):

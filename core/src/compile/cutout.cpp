@@ -77,6 +77,7 @@ bool is_painted(const Node &node) {
   case NodeKind::Voronoi:
   case NodeKind::Gradient:
   case NodeKind::Curves:
+  case NodeKind::Sky:
     return true;
   default:
     return asks_no_place(node.kind);

@@ -6,6 +6,7 @@
 #include "nodes/color_nodes.h"
 #include "nodes/image_nodes.h"
 #include "nodes/place_nodes.h"
+#include "nodes/sky.h"
 #include "nodes/texture_nodes.h"
 
 #include <bit>
@@ -92,6 +93,8 @@ template <class F> Value<F> node_value(const Program &program, const Inputs<F> &
     return ies_node(in, site);
   case NodeKind::Curves:
     return curves_node(in, site);
+  case NodeKind::Sky:
+    return sky_node(in, site);
   case NodeKind::ObjectInfo:
     return object_info_node(node, site);
   case NodeKind::LightPath:

@@ -88,6 +88,8 @@ Shape shape_of(const lancer_node &node) {
     return {2, 0, false};
   case LANCER_NODE_VECTOR_TRANSFORM:
     return {1, 3, false};
+  case LANCER_NODE_SKY:
+    return {1, LANCER_SKY_COUNT, true};
   case LANCER_NODE_OBJECT_INFO:
     return {0, LANCER_OBJECT_COUNT, false};
   case LANCER_NODE_LIGHT_PATH:
@@ -163,6 +165,8 @@ public:
       read_table(given, node);
     if (given.kind == LANCER_NODE_IES)
       read_angles(given, node);
+    if (given.kind == LANCER_NODE_SKY)
+      read_sky(given, node);
     if (given.kind == LANCER_NODE_BUMP) {
       if (given.first > at)
         bad_argument(where_ + "first " + std::to_string(given.first) + " is a later node");
@@ -240,6 +244,13 @@ private:
     };
     check(table.width, 1);
     check(table.height, table.width);
+  }
+
+  void read_sky(const lancer_node &given, Node &node) const {
+    const Image &table = table_of(given, node);
+    const bool fits = given.option > LANCER_SKY_HOSEK_WILKIE || (table.height == 1 && table.width == kSkyTexels);
+    if (table.kind != TexelKind::Float || table.channels != 3 || !fits)
+      bad_argument(where_ + "image " + std::to_string(given.image) + " is not a table of the sky");
   }
 
   // Converts names to numbers, including names that the kind implies.

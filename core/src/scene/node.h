@@ -18,6 +18,9 @@ struct Parameter {
   bool varies() const { return node >= 0; }
 };
 
+// SKY: texels of the table of PREETHAM and HOSEK_WILKIE: the sun, the radiance and nine coefficients.
+inline constexpr uint32_t kSkyTexels = 11;
+
 struct Node {
   uint32_t kind = 0, option = 0, flags = 0;
   uint32_t image = 0, image_count = 0, first = 0;
