@@ -168,7 +168,11 @@ TEST(Widths, SamplesAreThoseOfOneLane) {
     for (float &weight : weights)
       weight = random() % 3 ? any_unit(random) : 0.0f;
     weights[0] = 0.5f;
-    const DirectionMap map(width, height, weights);
+    DirectionMap map(width, height, weights);
+    if (round % 2)
+      map.add_disc(glm::dvec3(0.0, 0.6, 0.8), 0.001 + 0.7 * double(any_unit(random)), 0.4);
+    if (round % 4 == 3)
+      map.add_disc(glm::dvec3(0.8, -0.6, 0.0), 0.3, 0.35);
     in.map = map.table();
     in.filter = &(round % 4 ? window : box).table();
     for (int i = 0; i < 4; ++i) {

@@ -1,6 +1,8 @@
 #include "lights/environment.h"
 
 #include "nodes/run.h"
+#include "nodes/sky_table.h"
+#include "sampling/elementary.h"
 #include "simd/parallel.h"
 #include "simd/vectors.h"
 
@@ -19,6 +21,10 @@ constexpr uint32_t kPlainWidth = 1024, kLargestWidth = 2048;
 constexpr uint32_t kMostLooks = 1u << 25;
 // Share of the samples that is uniform over all directions: it finds a bright speck that the map has missed.
 constexpr float kEvenShare = 0.05f;
+// Largest share of the samples for all suns: places in their shadow depend on the rest.
+constexpr double kSunShare = 0.75;
+// Number of lookups across a sun and around it: more than there are segments of its limb.
+constexpr int kSunLooks = 16;
 
 // Returns the weight of a direction: the mean of the channels' absolute values, as in Cycles; 0 where nodes give no finite
 // number.
@@ -32,6 +38,9 @@ uint32_t image_width(const World &world, const std::vector<Image> &images) {
   uint32_t width = 0;
   for (const uint16_t number : world.schedule) {
     const Node &node = world.program.nodes[number];
+    // Beside the sun, a sky is as smooth as its table.
+    if (node.kind == NodeKind::Sky)
+      width = std::max(width, kSkyWidth);
     if (node.kind != NodeKind::Image && node.kind != NodeKind::Environment)
       continue;
     const bool cube = node.kind == NodeKind::Environment && node.option == EnvironmentProjection::Cube;
@@ -90,8 +99,8 @@ Environment::Environment(const World &world, const std::vector<Image> &images, c
   mean_ = double(weight_of(evaluate(glm::dvec3(0.0, 0.0, 1.0), values, nullptr, nullptr)));
 }
 
-glm::vec3 Environment::evaluate(const glm::dvec3 &wi, std::span<glm::vec4> values, const Camera *camera, const glm::dvec3 *eye,
-                                const LightPath<float> &path) const {
+glm::vec3 Environment::evaluate(const Program &program, const glm::dvec3 &wi, std::span<glm::vec4> values, const Camera *camera,
+                                const glm::dvec3 *eye, const LightPath<float> &path) const {
   NodeContext context;
   context.images = images_;
   context.normalisation = normalisation_;
@@ -99,13 +108,19 @@ glm::vec3 Environment::evaluate(const glm::dvec3 &wi, std::span<glm::vec4> value
   context.wo = glm::vec3(-wi);
   context.eye = eye;
   context.path = path;
-  run(world_->program, world_->schedule, context, values);
+  run(program, world_->schedule, context, values);
   return value_of(world_->radiance, values);
 }
 
 void Environment::make_maps(const BuildContext &context, bool glass) {
   const MapSize size = map_size(world_->map_resolution, image_width(*world_, *images_));
   const uint32_t width = size.width, height = size.height, looks = size.looks;
+  NodeScene scene;
+  scene.images = images_;
+  scene.normalisation = normalisation_;
+  const std::vector<Sun> suns = find_suns(*world_, scene);
+  const Program plain = suns.empty() ? Program() : without_suns(*world_, suns);
+  const Program &program = suns.empty() ? world_->program : plain;
   const DirectionMap grid(width, height, std::vector<float>(size_t(width) * height, 1.0f));
   std::vector<float> weights(size_t(width) * height);
   std::vector<double> totals(height);
@@ -115,7 +130,7 @@ void Environment::make_maps(const BuildContext &context, bool glass) {
       float sum = 0.0f;
       for (uint32_t look = 0; look < looks * looks; ++look) {
         const double x = column + (look % looks + 0.5) / looks, y = double(row) + (look / looks + 0.5) / looks;
-        sum += weight_of(evaluate(grid.direction(x, y), values, nullptr, nullptr));
+        sum += weight_of(evaluate(program, grid.direction(x, y), values, nullptr, nullptr));
       }
       const float mean = sum / float(looks * looks);
       weights[row * width + column] = std::isfinite(mean) ? mean : 0.0f;
@@ -140,6 +155,37 @@ void Environment::make_maps(const BuildContext &context, bool glass) {
   above_mean_ = map_of(float(mean_));
   if (glass)
     in_proportion_ = map_of(0.0f);
+  // Give each sun a share of the samples by its light.
+  std::vector<double> fluxes;
+  double light = 0.0;
+  for (const Sun &sun : suns)
+    light += fluxes.emplace_back(flux_of(sun, plain));
+  const double all = light + mean_ * 4.0 * glm::pi<double>();
+  mean_ += light / (4.0 * glm::pi<double>());
+  for (size_t i = 0; i < suns.size(); ++i) {
+    const double share = std::min(light / all, kSunShare) * (fluxes[i] / light);
+    if (!(share > 0.0))
+      continue;
+    above_mean_.add_disc(suns[i].axis, suns[i].half_angle, share);
+    if (glass)
+      in_proportion_.add_disc(suns[i].axis, suns[i].half_angle, share);
+  }
+}
+
+double Environment::flux_of(const Sun &sun, const Program &plain) const {
+  DirectionMap disc(4, 2, std::vector<float>(8, 1.0f));
+  disc.add_disc(sun.axis, sun.half_angle, 0.5);
+  std::vector<glm::vec4> values(world_->program.nodes.size());
+  double sum = 0.0;
+  for (int i = 0; i < kSunLooks * kSunLooks; ++i) {
+    // The first half of the numbers is the disc's.
+    const glm::vec2 u((float(i % kSunLooks) + 0.5f) / (2 * kSunLooks), (float(i / kSunLooks) + 0.5f) / kSunLooks);
+    const glm::dvec3 wi = disc.sample(u).direction;
+    sum += double(weight_of(evaluate(world_->program, wi, values, nullptr, nullptr))) -
+           double(weight_of(evaluate(plain, wi, values, nullptr, nullptr)));
+  }
+  const double s = sin(0.5 * sun.half_angle);
+  return std::max(sum, 0.0) / (kSunLooks * kSunLooks) * 4.0 * glm::pi<double>() * s * s;
 }
 
 LightSample Environment::sample(const glm::vec2 &u, std::span<glm::vec4> values, const Camera *camera, bool transmits) const {

@@ -1,7 +1,8 @@
-// The environment: its radiance in a direction, and sampling of directions by their brightness.
+// The environment: its radiance in a direction, and sampling of directions by their brightness, and of the discs of suns.
 #pragma once
 
 #include "lights/light.h"
+#include "lights/suns.h"
 #include "nodes/light_path.h"
 #include "sampling/direction_map.h"
 #include "scene/light.h"
@@ -30,7 +31,7 @@ public:
   // Sampling Techniques in Multiple Importance Sampling", 2019). Under two pictures of the sky, this leaves 0.48 and 0.83 of
   // the variance. Glass samples from a second map, proportional to the radiance as in Cycles. It needs that density because the
   // light that a rough boundary transmits between two directions that no facet connects depends on the density of light samples
-  // (Bsdf::eval_lit).
+  // (Bsdf::eval_lit). The discs of suns are sampled apart, uniformly: the maps do not contain them, and no disc is too small.
   Environment(const World &world, const std::vector<Image> &images, const Normalisation &normalisation,
               const BuildContext &context, bool glass);
 
@@ -65,8 +66,14 @@ public:
 
 private:
   glm::vec3 evaluate(const glm::dvec3 &wi, std::span<glm::vec4> values, const Camera *camera, const glm::dvec3 *eye,
-                     const LightPath<float> &path = {}) const;
+                     const LightPath<float> &path = {}) const {
+    return evaluate(world_->program, wi, values, camera, eye, path);
+  }
+  glm::vec3 evaluate(const Program &program, const glm::dvec3 &wi, std::span<glm::vec4> values, const Camera *camera,
+                     const glm::dvec3 *eye, const LightPath<float> &path = {}) const;
   void make_maps(const BuildContext &context, bool glass);
+  // Returns the integral of a sun's weight over its disc. plain: the nodes without the suns.
+  double flux_of(const Sun &sun, const Program &plain) const;
   const DirectionMap &map(bool transmits) const { return transmits && has_map_of_glass() ? in_proportion_ : above_mean_; }
 
   const World *world_ = nullptr;

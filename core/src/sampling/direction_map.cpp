@@ -39,14 +39,26 @@ void DirectionMap::append(const WeightedChoice &choice, std::vector<double> &sum
   guide.push_back(size - 1);
 }
 
+void DirectionMap::add_disc(const glm::dvec3 &axis, double half_angle, double share) {
+  DirectionDisc disc;
+  disc.axis = glm::normalize(axis);
+  const glm::dvec3 beside = std::abs(disc.axis.z) < 0.7 ? glm::dvec3(0.0, 0.0, 1.0) : glm::dvec3(1.0, 0.0, 0.0);
+  disc.across = glm::normalize(glm::cross(beside, disc.axis));
+  disc.up = glm::cross(disc.axis, disc.across);
+  const double s = sin(0.5 * half_angle);
+  disc.versine = 2.0 * s * s;
+  disc.from = discs_.empty() ? 0.0 : discs_.back().from + discs_.back().share;
+  disc.share = share;
+  disc.density = share / (2.0 * glm::pi<double>() * disc.versine);
+  discs_.push_back(disc);
+}
+
 DirectionMap::Sample DirectionMap::sample(const glm::vec2 &u) const {
   const DirectionSample<float> found = sample_direction(table(), u.x, u.y);
   return found.pdf > 0.0 ? Sample{found.direction, found.pdf} : Sample{};
 }
 
-double DirectionMap::pdf(const glm::vec3 &direction) const {
-  return direction_pdf<float>(table(), place_of(Vector3<float>(direction)));
-}
+double DirectionMap::pdf(const glm::vec3 &direction) const { return direction_pdf(table(), Vector3<float>(direction)); }
 
 glm::dvec3 DirectionMap::direction(double column, double row) const {
   const double theta = glm::pi<double>() * (row / height_), phi = glm::pi<double>() * (2.0 * column / width_ - 1.0);
@@ -63,12 +75,15 @@ DirectionTable DirectionMap::table() const {
           row_sums_.data(),
           column_sums_.data(),
           row_guide_.data(),
-          column_guide_.data()};
+          column_guide_.data(),
+          discs_.data(),
+          uint32_t(discs_.size()),
+          discs_.empty() ? 0.0 : discs_.back().from + discs_.back().share};
 }
 
 size_t DirectionMap::bytes() const {
   return (versines_.size() + solid_angles_.size() + row_sums_.size() + column_sums_.size()) * sizeof(double) +
-         (row_guide_.size() + column_guide_.size()) * sizeof(uint32_t);
+         (row_guide_.size() + column_guide_.size()) * sizeof(uint32_t) + discs_.size() * sizeof(DirectionDisc);
 }
 
 } // namespace lancer

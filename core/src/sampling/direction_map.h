@@ -1,4 +1,4 @@
-// Directions with a density that is constant in each cell of a grid over latitude and longitude.
+// Directions with a density that is constant in each cell of a grid over latitude and longitude, and in discs beside it.
 #pragma once
 
 #include "sampling/distribution.h"
@@ -6,6 +6,14 @@
 #include "simd/vectors.h"
 
 namespace lancer {
+
+// A cone of directions with a uniform density, for light that no cell is small enough for.
+struct DirectionDisc {
+  glm::dvec3 axis, across, up;    // orthonormal
+  double versine = 0.0;           // 1 - cos of its half angle
+  double from = 0.0, share = 0.0; // of the random numbers
+  double density = 0.0;           // per solid angle, times the share
+};
 
 // Sums and guides are those of WeightedChoice, each guide followed by the last entry: the entry for a number lies between two
 // of the guide. Columns have one row of sums and guide per row of the map, rows have one.
@@ -16,6 +24,10 @@ struct DirectionTable {
   const double *versines = nullptr, *solid_angles = nullptr;
   const double *row_sums = nullptr, *column_sums = nullptr;
   const uint32_t *row_guide = nullptr, *column_guide = nullptr;
+  // Discs, which take the first random numbers; cells take the rest from cells_from on.
+  const DirectionDisc *discs = nullptr;
+  uint32_t disc_count = 0;
+  double cells_from = 0.0;
 };
 
 // The entry of a table selected by a number, as WeightedChoice::Choice.
@@ -68,7 +80,8 @@ template <class F> struct DirectionSample {
   DoubleOf<F> pdf;        // per solid angle; 0 or less: no sample
 };
 
-template <class F> LANCER_LANE DirectionSample<F> sample_direction(const DirectionTable &map, F u, F v) {
+// Samples the cells.
+template <class F> LANCER_LANE DirectionSample<F> sample_cells(const DirectionTable &map, F u, F v) {
   using D = DoubleOf<F>;
   using U = WordOf<F>;
   // Select a row, a column in it, and a position in the cell by the remainders of both numbers.
@@ -93,12 +106,50 @@ template <class F> LANCER_LANE MapPlace<DoubleOf<F>> place_of(const Vector3<F> &
   return place_on_map(d.x, d.y, d.z, sqrt(d.x * d.x + d.y * d.y));
 }
 
-template <class F> LANCER_LANE DoubleOf<F> direction_pdf(const DirectionTable &map, const MapPlace<DoubleOf<F>> &place) {
+// Returns the density of the cells.
+template <class F> LANCER_LANE DoubleOf<F> cells_pdf(const DirectionTable &map, const Vector3<F> &direction) {
   using D = DoubleOf<F>;
+  const MapPlace<D> place = place_of(direction);
   const double width = static_cast<double>(map.width), height = static_cast<double>(map.height);
   const WordOf<F> row = truncate(min(D(height - 1.0), (D(0.5) - place.y) * D(height)));
   const WordOf<F> column = truncate(min(D(width - 1.0), (D(0.5) + place.x) * D(width)));
   return cell_density<F>(map, row, column);
+}
+
+// Returns the density of a direction in floats, as in the nodes of a world.
+template <class F> LANCER_LANE DoubleOf<F> direction_pdf(const DirectionTable &map, const Vector3<F> &direction) {
+  using D = DoubleOf<F>;
+  const D cells = cells_pdf(map, direction);
+  if (map.disc_count == 0)
+    return cells;
+  D sum = D(1.0 - map.cells_from) * cells;
+  for (const DirectionDisc *disc = map.discs; disc != map.discs + map.disc_count; ++disc) {
+    // The squared chord keeps its digits in small discs.
+    const Double3Of<F> apart = widen(direction) - Double3Of<F>(disc->axis);
+    sum += select(dot(apart, apart) <= D(2.0 * disc->versine), D(disc->density), D(0.0));
+  }
+  return sum;
+}
+
+template <class F> LANCER_LANE DirectionSample<F> sample_direction(const DirectionTable &map, F u, F v) {
+  using D = DoubleOf<F>;
+  if (map.disc_count == 0)
+    return sample_cells(map, u, v);
+  const D number = widen(u);
+  const F of_cells = narrow((number - D(map.cells_from)) / D(1.0 - map.cells_from));
+  DirectionSample<F> sample = sample_cells(map, F(min(max(of_cells, F(0.0f)), F(0x1.fffffep-1f))), v);
+  for (const DirectionDisc *disc = map.discs; disc != map.discs + map.disc_count; ++disc) {
+    const D place = (number - D(disc->from)) / D(disc->share);
+    const auto here = (place >= D(0.0)) & (place < D(1.0));
+    const SinCos turn = sin_cos_turn(D(min(max(place, D(0.0)), D(1.0))));
+    const D one(1.0), x = widen(v) * D(disc->versine), across = sqrt(x * (D(2.0) - x));
+    const Double3Of<F> found = (one - x) * Double3Of<F>(disc->axis) + (across * turn.cos) * Double3Of<F>(disc->across) +
+                               (across * turn.sin) * Double3Of<F>(disc->up);
+    sample.direction = select(here, found, sample.direction);
+  }
+  // The density is that of the direction in floats: the rounded direction may be on the other side of an edge.
+  sample.pdf = select(sample.pdf > D(0.0), direction_pdf(map, narrow(sample.direction)), sample.pdf);
+  return sample;
 }
 
 // Row 0 has the directions around +z; column 0 begins at -x, and columns follow the angle about z. Within a cell the density is
@@ -110,6 +161,8 @@ public:
   DirectionMap(uint32_t width, uint32_t height, const std::vector<float> &weights);
 
   bool empty() const { return height_ == 0; }
+  // Adds a disc of directions around an axis that takes a share of the samples. The shares of all must be below 1.
+  void add_disc(const glm::dvec3 &axis, double half_angle, double share);
   struct Sample {
     glm::dvec3 direction{0.0}; // unit
     double pdf = 0.0;          // per solid angle; 0 = no sample
@@ -133,6 +186,7 @@ private:
   uint32_t width_ = 0, height_ = 0;
   std::vector<double> versines_, solid_angles_, row_sums_, column_sums_;
   std::vector<uint32_t> row_guide_, column_guide_;
+  std::vector<DirectionDisc> discs_;
 };
 
 } // namespace lancer

@@ -223,7 +223,7 @@ constexpr WidthFormula kSamples[] = {
               lane.put(found.direction);
               lane.put(found.pdf);
             }),
-    formula("direction_pdf", [](Lane &lane) { lane.put(direction_pdf<F>(lane.in.map, place_of(lane.normal()))); }),
+    formula("direction_pdf", [](Lane &lane) { lane.put(direction_pdf(lane.in.map, lane.normal())); }),
     {},
 };
 

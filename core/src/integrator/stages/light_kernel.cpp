@@ -72,7 +72,7 @@ void sample_lamp(const Light &lamp, const Doubles (&p)[3], const VertexNumbers &
 
 [[gnu::flatten]] void sky_density(const DirectionTable &map, SkyBlock &block) {
   for (int first = 0; first < kBlockLanes; first += kLanes)
-    store(block.pdf + first, direction_pdf<F>(map, place_of(narrow(load3(block.wi, first)))));
+    store(block.pdf + first, direction_pdf(map, narrow(load3(block.wi, first))));
 }
 
 [[gnu::flatten]] void sample_faces(FaceBlock &block) {
