@@ -33,6 +33,7 @@ SUBJECTS = (
     "lights_switches",
     "lights_exact",
     "worlds",
+    "skies",
     "cameras",
     "objects",
     "films",

@@ -42,6 +42,20 @@ _VECTOR_MATHS = (
     "MODULO", "WRAP", "SNAP", "SINE", "COSINE", "TANGENT", "POWER", "SIGN", "ROUND",
 )  # fmt: skip
 _DIMENSIONS = ("1D", "2D", "3D", "4D")
+# Settings of the Sky Texture, without the disc of the sun. Blender 5.0 has renamed dust.
+SKIES = {
+    "sky_type": ("NISHITA", "SINGLE_SCATTERING", "MULTIPLE_SCATTERING", "PREETHAM", "HOSEK_WILKIE"),
+    "sun_direction": ((0.0, 0.0, 1.0), (0.6, -0.5, 0.6), (-0.3, 0.9, 0.15)),
+    "turbidity": (1.0, 2.2, 5.7, 10.0),
+    "ground_albedo": (0.0, 0.3, 1.0),
+    "sun_elevation": (-0.05, 0.05, 0.3, 1.0, 1.5707964),
+    "sun_rotation": (0.0, 2.0, -1.0),
+    "altitude": (0.0, 100.0, 8000.0, 60000.0),
+    "air_density": (1.0, 0.3, 4.0),
+    "dust_density": (1.0, 0.0, 6.0),
+    "aerosol_density": (1.0, 0.0, 6.0),
+    "ozone_density": (1.0, 0.0, 6.0),
+}
 
 VALUES = {
     "ShaderNodeValue": Kind({}, {"Value": "f"}, special=("value",)),
@@ -248,6 +262,14 @@ VALUES = {
     "ShaderNodeWavelength": Kind({"Wavelength": ("f", 360.0, 800.0)}, {"Color": "c"}, weight=0.5),
     "ShaderNodeCameraData": Kind({}, {"View Vector": "v", "View Z Depth": "f", "View Distance": "f"}, weight=0.5),
     "ShaderNodeWireframe": Kind({"Size": ("f", 0.0, 0.2)}, {"Fac": "f"}, {"use_pixel_size": SWITCH}, 0.5),
+    # A wide sun of little light: few pixels show a narrow one, which is as bright as all others together.
+    "ShaderNodeTexSky": Kind(
+        {"Vector": TEXTURE},
+        {"Color": "c"},
+        {**SKIES, "sun_disc": SWITCH, "sun_size": (0.4, 1.5), "sun_intensity": (0.01, 0.1)},
+        0.5,
+        special=("mapping",),
+    ),
     "ShaderNodeTexCoord": Kind(
         {},
         {"Generated": "v", "Normal": "v", "UV": "v", "Object": "v", "Camera": "v", "Window": "v", "Reflection": "v"},

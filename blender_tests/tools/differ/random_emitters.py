@@ -2,6 +2,7 @@
 
 import math
 
+from .node_kinds import SKIES
 from .record import Record
 
 _RAYS = ("camera", "diffuse", "glossy", "transmission")
@@ -57,10 +58,29 @@ def _background(trees, tree, image):
         # No sky is darker than black.
         inputs = {"Vector": trees.value(tree, "c", 1)}
         color = [trees.write(tree, "ShaderNodeVectorMath", {"operation": "ABSOLUTE"}, inputs), "Vector"]
-    inputs = {"Color": color, "Strength": dice.number(0.2, 1.2)}
+    strength = dice.number(0.2, 1.2)
+    if image is None and not isinstance(color[0], str) and dice.chance(0.2):
+        # Of the brightness of the other skies.
+        color, strength = [_sky(trees, tree), "Color"], 0.1 * strength
+    inputs = {"Color": color, "Strength": strength}
     if dice.chance(0.05):
         return [trees.write(tree, "ShaderNodeEmission", {}, inputs), "Emission"]
     return [trees.write(tree, "ShaderNodeBackground", {}, inputs), "Background"]
+
+
+def _sky(trees, tree):
+    """The Sky Texture, now and then turned. The disc of the sun is as wide as a mirror shows it in some pixels."""
+    dice = trees.dice
+    props = {name: dice.pick(choices) for name, choices in SKIES.items()}
+    props |= {"sun_disc": dice.chance(0.7), "sun_size": dice.pick((0.1, 0.3, 1.0)), "sun_intensity": dice.pick((0.1, 1.0))}
+    return trees.write(tree, "ShaderNodeTexSky", props, _turned(trees, tree) if dice.chance(0.3) else {})
+
+
+def _turned(trees, tree):
+    dice = trees.dice
+    place = trees.write(tree, "ShaderNodeTexCoord", {}, {})
+    turned = {"Vector": [place, "Generated"], "Rotation": dice.vector(-math.pi, math.pi)}
+    return {"Vector": [trees.write(tree, "ShaderNodeMapping", {}, turned), "Vector"]}
 
 
 def _picture(trees, tree, image):
