@@ -52,8 +52,9 @@ TEST(NodesSky, LooksUpByAzimuthFromTheSunAndElevation) {
         const glm::vec3 old = stage.in(d, LANCER_SKY_NISHITA, matrix);
         const double fade = std::pow(std::max(1.0 + 2.5 * std::min(double(d.z), 0.0), 0.0), 3.0);
         EXPECT_NEAR(old.x, fade * (0.5 - beside / (2.0 * M_PI)), 2e-6);
-        if (elevation > 0.0)
+        if (elevation > 0.0) {
           EXPECT_NEAR(old.y, std::sqrt(elevation / (0.5 * M_PI)), 2e-6);
+        }
       }
 }
 

@@ -22,7 +22,7 @@ constexpr uint32_t kMostLooks = 1u << 25;
 // Share of the samples that is uniform over all directions: it finds a bright speck that the map has missed.
 constexpr float kEvenShare = 0.05f;
 // Largest share of the samples for all suns: places in their shadow depend on the rest.
-constexpr double kSunShare = 0.75;
+constexpr double kSunShare = 0.8;
 // Number of lookups across a sun and around it: more than there are segments of its limb.
 constexpr int kSunLooks = 16;
 
@@ -138,6 +138,12 @@ void Environment::make_maps(const BuildContext &context, bool glass) {
     }
   });
   mean_ = std::accumulate(totals.begin(), totals.end(), 0.0) / (4.0 * glm::pi<double>());
+  const double sky = mean_;
+  std::vector<double> fluxes;
+  double light = 0.0;
+  for (const Sun &sun : suns)
+    light += fluxes.emplace_back(flux_of(sun, plain));
+  mean_ += light / (4.0 * glm::pi<double>());
   // Where all lookups are black, the remaining light must be small, and the map becomes uniform.
   const auto map_of = [&](float least) {
     std::vector<float> above(weights);
@@ -150,26 +156,17 @@ void Environment::make_maps(const BuildContext &context, bool glass) {
     const float even = sum > 0.0 ? kEvenShare * float(sum / (4.0 * glm::pi<double>())) : 1.0f;
     for (float &weight : above)
       weight += even;
-    return DirectionMap(width, height, above);
+    DirectionMap map(width, height, above);
+    // Give each sun a share of the samples by its light, relative to the light that this map samples.
+    const double of_suns = std::min(light / (light + sum), kSunShare);
+    for (size_t i = 0; i < suns.size(); ++i)
+      if (fluxes[i] > 0.0)
+        map.add_disc(suns[i].axis, suns[i].half_angle, of_suns * (fluxes[i] / light));
+    return map;
   };
-  above_mean_ = map_of(float(mean_));
+  above_mean_ = map_of(float(sky));
   if (glass)
     in_proportion_ = map_of(0.0f);
-  // Give each sun a share of the samples by its light.
-  std::vector<double> fluxes;
-  double light = 0.0;
-  for (const Sun &sun : suns)
-    light += fluxes.emplace_back(flux_of(sun, plain));
-  const double all = light + mean_ * 4.0 * glm::pi<double>();
-  mean_ += light / (4.0 * glm::pi<double>());
-  for (size_t i = 0; i < suns.size(); ++i) {
-    const double share = std::min(light / all, kSunShare) * (fluxes[i] / light);
-    if (!(share > 0.0))
-      continue;
-    above_mean_.add_disc(suns[i].axis, suns[i].half_angle, share);
-    if (glass)
-      in_proportion_.add_disc(suns[i].axis, suns[i].half_angle, share);
-  }
 }
 
 double Environment::flux_of(const Sun &sun, const Program &plain) const {
