@@ -49,3 +49,11 @@ def test_newer_nodes(name, least, tmp_path):
 def test_sky(which, name, least, tmp_path):
     """The Sky Texture in all directions. Preetham's sky of a sun below the horizon is black in part."""
     _judged(which, tmp_path, name, least, cases="sky_cases")
+
+
+@pytest.mark.parametrize("which", [MODULE, PROGRAM])
+def test_sun_and_sky_are_no_noisier_than_in_cycles(which, tmp_path):
+    """At equal samples, with the lights and paths that the pilot chooses. Four pictures give a ratio to some percent."""
+    got = blenders.run(which, tmp_path, "sky_cases", "noise")
+    got.pop("console")
+    assert len(got) == 3 and all(ratio < 0.9 for ratio in got.values()), got

@@ -5,6 +5,8 @@ import itertools
 import math
 
 import bpy
+import numpy as np
+import stage
 from mathutils import Matrix, Vector
 from procedural_cases import Board
 
@@ -167,3 +169,56 @@ def suns(side):
 
         board.square(f"{model} {elevation} {size} {high}"[:63], build)
     return board.answer()
+
+
+def noise():
+    """Return {elevation: the relative variance of a sample of Lancer over that of Cycles} of matt things under sun and sky."""
+    found = {}
+    for elevation in (3.0, 15.0, 50.0):
+        scene = stage.empty(96, 64, samples=16)
+        scene.lancer.seed = scene.cycles.seed = 0
+        tree = _world(scene)
+        sky = _node(tree, {"sky_type": _atmospheres()[-1], "sun_elevation": elevation * _DEGREES, "sun_rotation": 2.3})
+        tree.links.new(sky.outputs[0], tree.nodes["Background"].inputs["Color"])
+        tree.nodes["Background"].inputs["Strength"].default_value = 0.1
+        matt = _matt()
+        stage.plane(12.0, matt)
+        for x in (-1.5, 0.0, 1.5):
+            stage.cube(1.0, matt, location=(x, 0.3 * x, 0.5))
+        stage.camera()
+        variances = {}
+        for engine in ("CYCLES", "LANCER"):
+            scene.render.engine = engine
+            cycles = scene.cycles
+            cycles.samples, cycles.use_adaptive_sampling, cycles.use_denoising = 16, False, False
+            cycles.filter_width, cycles.light_sampling_threshold = 1.0, 0.0
+            pictures = []
+            for seed in range(4):
+                cycles.seed = scene.lancer.seed = seed
+                pictures.append(stage.picture(scene)[:, :, :3].astype(float))
+            mean = np.mean(pictures, axis=0)
+            variances[engine] = float(np.mean(np.var(pictures, axis=0, ddof=1) / (mean + 0.01 * mean.mean()) ** 2))
+        found[str(elevation)] = variances["LANCER"] / variances["CYCLES"]
+    return found
+
+
+def _world(scene):
+    scene.world = bpy.data.worlds.new("World")
+    if bpy.app.version < (5, 0):
+        scene.world.use_nodes = True
+    tree = scene.world.node_tree
+    tree.nodes.clear()
+    background, end = tree.nodes.new("ShaderNodeBackground"), tree.nodes.new("ShaderNodeOutputWorld")
+    background.name = "Background"
+    tree.links.new(background.outputs[0], end.inputs["Surface"])
+    return tree
+
+
+def _matt():
+    material = bpy.data.materials.new("Matt")
+    material.use_nodes = True
+    tree = material.node_tree
+    tree.nodes.clear()
+    diffuse, end = tree.nodes.new("ShaderNodeBsdfDiffuse"), tree.nodes.new("ShaderNodeOutputMaterial")
+    tree.links.new(diffuse.outputs[0], end.inputs["Surface"])
+    return material
