@@ -145,7 +145,7 @@ TEST(NodesSky, TablesOfEachKernel) {
   for (uint32_t i = 0; i < kSkyHalf; ++i)
     cosines.of[i] = -std::cos(float(i) * 0.0122f);
   SingleRow single{};
-  single.ray = {0.2f, 0.7f, -3e5f, &cosines};
+  single.ray = {0.2f, 0.7f, -3e4f, &cosines};
   single.step = 5e3f;
   single.sun_is_low = true;
   for (int i = 0; i < SingleRow::kSteps; ++i) {
