@@ -453,6 +453,7 @@ class LobeKind(IntEnum):
     TRANSLUCENT = 12
     PRINCIPLED = 13
     MINNAERT = 14
+    TOON = 15
 
 
 class Distribution(IntEnum):

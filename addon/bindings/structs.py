@@ -128,6 +128,11 @@ class Principled(Structure):
         ("sheen_roughness", Parameter),
         ("sheen_tint", Parameter),
         ("emission", Parameter),
+        ("film_thickness", Parameter),
+        ("film_ior", Parameter),
+        ("thin_wall", Parameter),
+        ("wall_scattering", Parameter),
+        ("wall_forward", Parameter),
     ]
 
 
@@ -147,6 +152,9 @@ class Lobe(Structure):
         ("rotation", Parameter),
         ("normal", Parameter),
         ("tangent", Parameter),
+        ("roughness_across", Parameter),
+        ("film_thickness", Parameter),
+        ("film_ior", Parameter),
         ("principled", POINTER(Principled)),
     ]
 
@@ -482,6 +490,11 @@ PARAMETERS = {
         "sheen_roughness": ("share", 0.5),
         "sheen_tint": ("color", (1.0, 1.0, 1.0)),
         "emission": ("vector", (0.0, 0.0, 0.0)),
+        "film_thickness": ("amount", 0.0),
+        "film_ior": ("index", 1.33),
+        "thin_wall": ("share", 0.0),
+        "wall_scattering": ("share", 0.0),
+        "wall_forward": ("share", 0.5),
     },
     Lobe: {
         "weight": ("color", (1.0, 1.0, 1.0)),

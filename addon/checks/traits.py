@@ -36,7 +36,9 @@ def clear_lobes(material):
             yield lobe.ior, lobe
         elif lobe.kind == LobeKind.PRINCIPLED and lobe.principled is not None:
             principled = lobe.principled
-            if not is_zero(principled.transmission) and not is_number(principled.metallic, 1.0):
+            # A sheet has no inside.
+            solid = isinstance(principled.thin_wall, NodeRef) or is_zero(principled.thin_wall)
+            if solid and not is_zero(principled.transmission) and not is_number(principled.metallic, 1.0):
                 yield principled.ior, lobe
 
 

@@ -7,8 +7,11 @@ from ..messages.severity import Severity
 from .arithmetic import is_constant
 from .course_models import read_group
 from .distributions import read_distribution
+from .films import read_film
 from .principled import read_principled
 from .sockets import DIFFUSE_OPTION, SMALLEST_IOR
+
+_NONE = (0.0, 0.0, 0.0)  # a direction: straight on
 
 
 def _diffuse(surface, site, weight):
@@ -48,7 +51,6 @@ def _glossy(surface, site, weight):
 
 
 def _glass(surface, site, weight):
-    _tell_thin_film(surface, site)
     surface.add(
         LobeKind.REFRACTION if site.node.type == "BSDF_REFRACTION" else LobeKind.GLASS,
         weight,
@@ -57,13 +59,8 @@ def _glass(surface, site, weight):
         ior=surface.graph.parameter(site, ("IOR",), 1.5, low=SMALLEST_IOR),
         normal=surface.normal(site),
         distribution=read_distribution(surface.graph, site),
+        **read_film(surface, site),
     )
-
-
-def _tell_thin_film(surface, site):
-    thickness = surface.graph.parameter(site, ("Thin Film Thickness",), 0.0)
-    if not is_constant(thickness, 0.0):
-        surface.graph.tell(site, "input 'Thin Film Thickness' is not supported, the surface has no film", "feature:thin film")
 
 
 # The option of CONDUCTOR; before 5.0 Cycles approximates the Fresnel equations of metals.
@@ -71,7 +68,6 @@ _F82, _PHYSICAL = 0, 1 if bpy.app.version >= (5, 0) else 2
 
 
 def _metallic(surface, site, weight):
-    _tell_thin_film(surface, site)
     physical = site.node.fresnel_type == "PHYSICAL_CONDUCTOR"
     if physical:
         color, edge = (surface.graph.parameter(site, (name,), 1.0, kind="color") for name in ("IOR", "Extinction"))
@@ -87,6 +83,7 @@ def _metallic(surface, site, weight):
         normal=surface.normal(site),
         distribution=read_distribution(surface.graph, site),
         **_stretch(surface, site),
+        **read_film(surface, site),
     )
 
 
@@ -124,13 +121,20 @@ def _holdout(surface, site, weight):
     surface.holdout = surface.graph.add(surface.holdout, weight)
 
 
+# The option of TOON.
+_DIFFUSE_TOON, _GLOSSY_TOON = 0, 1
+
+
 def _toon(surface, site, weight):
-    if site.node.component == "GLOSSY":
-        surface.graph.tell(site, "Toon is not supported, a glossy surface of this size is used")
-        size = surface.share(site, ("Size",), 0.5)
-        surface.add(LobeKind.GLOSSY, weight, surface.color(site), roughness=size, normal=surface.normal(site))
-    else:
-        read_unknown(surface, site, weight)
+    surface.add(
+        LobeKind.TOON,
+        weight,
+        surface.color(site),
+        roughness=surface.share(site, ("Size",), 0.5),
+        roughness_across=surface.share(site, ("Smooth",), 0.0),
+        normal=surface.normal(site),
+        option=_GLOSSY_TOON if site.node.component == "GLOSSY" else _DIFFUSE_TOON,
+    )
 
 
 def _portal(surface, site, weight):

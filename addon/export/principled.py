@@ -8,6 +8,7 @@ from ..bindings.shading import NodeRef
 from ..bindings.structs import PARAMETERS, Principled
 from .arithmetic import is_constant
 from .distributions import read_distribution
+from .films import read_film
 from .old_ranges import tell_range
 from .sockets import DIFFUSE_OPTION, PRINCIPLED, RULES, SMALLEST_IOR, find
 
@@ -17,8 +18,8 @@ _LAYERS = ("coat", "sheen", "anisotropic")
 # Weights that the core accepts beyond 1 and Blender clamps to 0 to 1.
 _SHARES = ("coat", "sheen")
 _UNCLAMPED = ("metallic", "roughness", "anisotropic")
-_FILM = ("thin_film", "the surface has no film")
-_WALL = ("thin_wall", "the surface bounds a solid")
+# Read with the parts that they belong to.
+_APART = ("base_color", "emission", "film_thickness", "film_ior", "thin_wall", "wall_scattering", "wall_forward")
 
 
 def read_principled(surface, site, weight):
@@ -33,13 +34,11 @@ def read_principled(surface, site, weight):
     weight = graph.multiply(weight, alpha)
     if is_constant(weight, 0.0):
         return
-    for name, meaning in (_FILM, _WALL):
-        if not is_constant(number(name, 0.0), 0.0):
-            graph.tell(site, f"input '{PRINCIPLED[name][0]}' is not supported, {meaning}", f"feature:Principled {name}")
-    values = {}
+    values = read_film(surface, site)
+    thin_wall = values["thin_wall"] = number("thin_wall", 0.0)
     for name, (kind, default) in PARAMETERS[Principled].items():
         layer, _, part = name.partition("_")
-        if name in ("base_color", "emission") or (part and layer in _LAYERS and is_constant(values[layer], 0.0)):
+        if name in _APART or (part and layer in _LAYERS and is_constant(values[layer], 0.0)):
             continue
         if name in ("specular_tint", "sheen_tint"):
             values[name] = _tint(surface, site, name)
@@ -58,6 +57,10 @@ def read_principled(surface, site, weight):
         else:
             values[name] = number(name, default, SMALLEST_IOR)
     values["base_color"] = _base_color(surface, site, values)
+    if not is_constant(thin_wall, 0.0):
+        values["wall_scattering"] = number("subsurface", 0.0, 0.0, 1.0)
+        anisotropy = number("subsurface_anisotropy", 0.0)
+        values["wall_forward"] = graph.clamped(graph.multiply(0.5, graph.add(1.0, anisotropy)))
     if RULES == Rules.BLENDER_3 and not is_constant(values["coat"], 0.0):
         # Cycles 3 weighs the base by a probability of the coat that differs from its sampler's.
         graph.tell(site, "Clearcoat leaves the base its light, which is brighter under a sky than in Cycles 3")
@@ -94,7 +97,8 @@ def _base_color(surface, site, values):
     graph = surface.graph
     base = surface.color(site, PRINCIPLED["base_color"])
     share = surface.share(site, PRINCIPLED["subsurface"])
-    if is_constant(share, 0.0):
+    wall = values["thin_wall"]
+    if is_constant(share, 0.0) or not (isinstance(wall, NodeRef) or is_constant(wall, 0.0)):
         return base
     name = find(site.node, PRINCIPLED["subsurface"]).name
     graph.tell(site, f"input '{name}' is not supported, a diffuse surface is used", "feature:subsurface scattering")

@@ -42,7 +42,9 @@ PRINCIPLED = {
     "emission_color": ("Emission Color", "Emission"),
     "emission_strength": ("Emission Strength",),
     "subsurface": ("Subsurface Weight", "Subsurface"),
-    "thin_film": ("Thin Film Thickness",),
+    "subsurface_anisotropy": ("Subsurface Anisotropy",),
+    "film_thickness": ("Thin Film Thickness",),
+    "film_ior": ("Thin Film IOR",),
     "thin_wall": ("Thin Wall",),
 }
 

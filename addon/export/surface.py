@@ -18,7 +18,7 @@ _MAX_LOBES = 64  # the core's limit
 _NONE = (0.0, 0.0, 0.0)  # a normal or tangent: the surface's own
 # Lobes linear in their colour, into which a constant weight is multiplied. Rough diffuse is not linear: its interreflection
 # between facets depends on powers of the colour.
-_LINEAR = {LobeKind.LAMBERT, LobeKind.TRANSLUCENT, LobeKind.REFRACTION, LobeKind.SHEEN}
+_LINEAR = {LobeKind.LAMBERT, LobeKind.TRANSLUCENT, LobeKind.REFRACTION, LobeKind.SHEEN, LobeKind.TOON}
 
 
 class Surface:

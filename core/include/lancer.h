@@ -592,7 +592,11 @@ LANCER_API lancer_status lancer_compute_sky(uint32_t model, double elevation, do
  *                2: the same, approximated for strong absorption as in Blender before 5.0
  *   SHEEN        cloth: distribution GGX = microfibres, BECKMANN = Ashikhmin's velvet (VELVET before 4.0)
  *   TRANSLUCENT  color/pi on the other side
- *   PRINCIPLED   see lancer_principled */
+ *   PRINCIPLED   see lancer_principled
+ *   TOON         of constant brightness in a cone of the angle pi/2 roughness, which fades over pi/2 roughness_across; its axis
+ *                is the normal for option 0, the mirrored direction for option 1
+ * film_thickness, in nanometres, and film_ior describe a film on GLASS and CONDUCTOR whose interference colours the reflected
+ * light, in the primaries of Rec. 709; a film of at most 0.1 is none. */
 /* clang-format on */
 enum lancer_lobe_kind {
   LANCER_LAMBERT = 0,
@@ -610,7 +614,8 @@ enum lancer_lobe_kind {
   LANCER_TRANSLUCENT = 12,
   LANCER_PRINCIPLED = 13,
   LANCER_MINNAERT = 14,
-  LANCER_LOBE_KIND_COUNT = 15
+  LANCER_TOON = 15,
+  LANCER_LOBE_KIND_COUNT = 16
 };
 enum lancer_distribution {
   LANCER_DISTRIBUTION_GGX = 0,
@@ -655,6 +660,11 @@ typedef struct lancer_principled {
   lancer_parameter sheen_roughness;        /* [share 0.5] */
   lancer_parameter sheen_tint;             /* [color 1] */
   lancer_parameter emission;               /* [vector 0] radiance, below sheen and coat; may be negative */
+  lancer_parameter film_thickness;         /* [amount 0] nanometres, of a film on the base; from 5.0 on also on metal */
+  lancer_parameter film_ior;               /* [index 1.33] */
+  lancer_parameter thin_wall;              /* [share 0] from 5.2: above 0 the surface is a sheet with air on both sides */
+  lancer_parameter wall_scattering;        /* [share 0] share of a sheet's diffuse light that also passes to the other side */
+  lancer_parameter wall_forward;           /* [share 0.5] how much of that light passes */
 } lancer_principled;
 
 typedef struct lancer_lobe {
@@ -672,6 +682,9 @@ typedef struct lancer_lobe {
   lancer_parameter rotation;           /* [turns 0] GLOSSY, CONDUCTOR */
   lancer_parameter normal;             /* [direction 0] none: the shading normal */
   lancer_parameter tangent;            /* [direction 0] none: any */
+  lancer_parameter roughness_across;   /* [share 0] TOON */
+  lancer_parameter film_thickness;     /* [amount 0] GLASS, CONDUCTOR */
+  lancer_parameter film_ior;           /* [index 1.33] GLASS, CONDUCTOR */
   const lancer_principled *principled; /* PRINCIPLED */
 } lancer_lobe;
 

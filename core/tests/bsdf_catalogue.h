@@ -82,6 +82,20 @@ inline std::vector<Known> facet_lobes(double alpha) {
   metal.color = {0.2f, 0.9f, 1.4f};
   metal.edge = {3.9f, 2.4f, 2.1f};
   add("metal by its index", metal);
+  const auto covered = [](LobeInputs<float> inputs, Rules rules) {
+    inputs.rules = rules;
+    inputs.film_thickness = 400.0f;
+    inputs.film_ior = 1.33f;
+    return inputs;
+  };
+  add("metal by its index with a film", covered(metal, Rules::Blender50));
+  metal.option = 0;
+  metal.color = {0.9f, 0.6f, 0.2f};
+  metal.edge = {0.9f, 0.8f, 0.4f};
+  add("metal by F82 with a film", covered(metal, Rules::Blender50));
+  for (const Rules rules : {Rules::Blender45, Rules::Blender50})
+    add("glass with a film, " + std::to_string(int(rules)),
+        covered(at_alpha(LobeKind::Glass, Facets::Ggx, alpha, above), rules), above);
   for (const float ior : {above, below}) {
     const std::string which = " of " + std::to_string(ior);
     add("glass" + which, at_alpha(LobeKind::Glass, Facets::Ggx, alpha, ior), ior);
@@ -117,6 +131,12 @@ inline std::vector<Known> other_lobes(double alpha) {
   all.push_back(known("preserving Oren-Nayar" + rough, {clay}));
   const LobeInputs<float> leaf = described(LobeKind::Translucent, 0.0f, 1.5f, 0.0f, {0.2f, 0.6f, 0.1f});
   all.push_back(known("translucent", {leaf}));
+  for (const uint32_t option : {0u, 1u}) {
+    LobeInputs<float> toon = described(LobeKind::Toon, 0.3f, 1.5f, 0.0f, {0.8f, 0.4f, 0.1f});
+    toon.roughness_across = 0.4f;
+    toon.option = option;
+    all.push_back(known(option == 0 ? "toon" : "glossy toon", {toon}, 0.0, 1.0f, false));
+  }
   all.push_back(known("coated" + rough, {diffuse, coat}, alpha));
   all.push_back(known("mirror of half" + rough,
                       {diffuse, described(LobeKind::Mirror, 0.0f, 1.5f, 0.0f, glm::vec3(0.5f)),
@@ -134,6 +154,19 @@ inline std::vector<Known> other_lobes(double alpha) {
     in.transmission_roughness = 0.3f * in.roughness;
     const auto look_at = [in](Bsdf<float> &bsdf, const glm::vec3 &wo) { look(bsdf, in, wo); };
     all.push_back({"Principled " + std::to_string(int(rules)) + rough, look_at, alpha, 1.5f, false});
+  }
+  // Light through a narrow sheet is about as narrow as the highlight, where no square of this catalogue is fine.
+  if (alpha >= 0.3) {
+    PrincipledInputs<float> in = plain(Rules::Blender52);
+    in.roughness = static_cast<float>(std::sqrt(alpha));
+    in.transmission = 0.5f;
+    in.thin_wall = 1.0f;
+    in.wall_scattering = 0.6f;
+    in.wall_forward = 0.7f;
+    in.diffuse_roughness = 0.5f;
+    in.film_thickness = 400.0f;
+    const auto look_at = [in](Bsdf<float> &bsdf, const glm::vec3 &wo) { look(bsdf, in, wo); };
+    all.push_back({"sheet" + rough, look_at, alpha, 1.0f, false});
   }
   return all;
 }

@@ -229,6 +229,20 @@ TEST(BsdfLaws, NoOtherLobeGivesBackMoreThanItGets) {
     add("sheen", testing::at_alpha(LobeKind::Sheen, Facets::Ggx, alpha));
     add("velvet", testing::at_alpha(LobeKind::Sheen, Facets::Beckmann, alpha));
     add("Oren-Nayar", testing::at_alpha(LobeKind::Diffuse, Facets::Ggx, alpha));
+    for (const uint32_t option : {0u, 1u}) {
+      LobeInputs<float> toon = testing::at_alpha(LobeKind::Toon, Facets::Ggx, alpha);
+      toon.roughness_across = 0.5f;
+      toon.option = option;
+      add("toon", toon);
+    }
+    PrincipledInputs<float> sheet = testing::plain(Rules::Blender52);
+    sheet.base_color = glm::vec3(1.0f);
+    sheet.roughness = float(std::sqrt(alpha));
+    sheet.thin_wall = 1.0f;
+    sheet.wall_scattering = sheet.transmission = 0.5f;
+    sheet.film_thickness = 400.0f;
+    sheet.distribution = Facets::Ggx;
+    all.push_back({"sheet" + rough, [sheet](Bsdf<float> &bsdf, const glm::vec3 &wo) { testing::look(bsdf, sheet, wo); }});
     for (const Rules rules : {Rules::Blender4, Rules::Blender45})
       for (const float metallic : {0.0f, 0.5f}) {
         PrincipledInputs<float> in = testing::plain(rules);

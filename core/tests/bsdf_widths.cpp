@@ -117,7 +117,8 @@ TEST(BsdfWidths, SeveralLobes) {
 }
 
 // Materials whose facets are planned ahead.
-ReadyLobe planned(Random &random, const Code &code) {
+// covered: they have a film.
+ReadyLobe planned(Random &random, const Code &code, bool covered) {
   const Described from = described(random, code, {0.0f, 0.0f, 1.0f});
   Material material;
   LobeDescription &lobe = material.lobes.emplace_back();
@@ -162,7 +163,7 @@ TEST(BsdfWidths, LobesThatArePlanned) {
       std::vector<ReadyLobe> ready;
       for (Place &at : places) {
         at = place(random);
-        ready.push_back(planned(random, code));
+        ready.push_back(planned(random, code, k % 2 != 0));
       }
       for (const ReadyLobe &one : ready) {
         ASSERT_EQ(one.code(), ready[0].code());

@@ -36,6 +36,11 @@ inline float index(Random &random) {
                            : one_of(random, {1.0f, 1.5f, 1.00001f, 0.7f, std::numeric_limits<float>::infinity()});
 }
 
+// Of a film, in nanometres.
+inline float thickness(Random &random) {
+  return random.next() % 2 ? one_of(random, {0.0f, 0.05f, 0.5f, 20.0f, 1e9f}) : 2000.0f * random.uniform();
+}
+
 // The members that are equal in all lanes.
 struct Code {
   LobeKind kind;
@@ -62,7 +67,7 @@ inline std::vector<Code> all_codes() {
           const bool there = facets == Facets::Ggx || (facets == Facets::Beckmann && (of_facets || cloth)) ||
                              (facets == Facets::AshikhminShirley && kind == LobeKind::Glossy) ||
                              (facets == Facets::MultiGgx && (of_facets || layered));
-          const bool optional = layered || kind == LobeKind::Diffuse || kind == LobeKind::Conductor;
+          const bool optional = layered || kind == LobeKind::Diffuse || kind == LobeKind::Conductor || kind == LobeKind::Toon;
           if (there && (optional || option == 0))
             all.push_back({kind, rules, facets, option});
         }
@@ -84,6 +89,9 @@ inline Described described(Random &random, const Code &code, const glm::vec3 &ns
   lobe.edge = color(random);
   lobe.anisotropy = one_of(random, {0.0f, 1.0f}) * (1.8f * random.uniform() - 0.9f);
   lobe.rotation = one_of(random, {0.0f, 1.0f}) * random.uniform();
+  lobe.roughness_across = share(random);
+  lobe.film_thickness = thickness(random);
+  lobe.film_ior = 0.8f + random.uniform();
   if (random.next() % 2)
     lobe.normal = near(random, ns, 0.8f);
   if (random.next() % 2)
@@ -113,6 +121,13 @@ inline Described described(Random &random, const Code &code, const glm::vec3 &ns
   in.sheen_roughness = roughness(random);
   in.sheen_tint = color(random);
   in.emission = color(random);
+  in.film_thickness = thickness(random);
+  in.film_ior = 0.8f + random.uniform();
+  if (in.rules == Rules::Blender52) {
+    in.thin_wall = one_of(random, {0.0f, 0.0f, 1.0f});
+    in.wall_scattering = share(random);
+    in.wall_forward = share(random);
+  }
   return d;
 }
 

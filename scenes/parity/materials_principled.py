@@ -4,6 +4,7 @@ import math
 
 import bpy
 
+from .. import parts
 from .catalogue import case, variants
 from .nodes import material, principled, with_socket
 from .reasons import CLEAR_COAT3, CLEAR_COAT3_TOLD, WALK3, WALK3_TOLD
@@ -183,3 +184,83 @@ def principled_diffuse_roughness(scene):
 )
 def principled_subsurface(scene):
     studio(scene, principled(Base_Color=(0.8, 0.5, 0.4), Subsurface_Weight=1.0, Roughness=0.5), caustics=True)
+
+
+_FILM = "Thin Film Thickness"
+
+
+def _film(thickness, ior=1.33, **inputs):
+    return principled(Thin_Film_Thickness=thickness, Thin_Film_IOR=ior, **inputs)
+
+
+@variants(
+    "LOBES",
+    values={"thinnest": (15.0, 1.6, 0.2), "thin": ((300.0, 1.33, 0.2), {"quick": True}), "thick": (1200.0, 1.8, 0.3)},
+    needs=with_socket(_KIND, _FILM),
+)
+def principled_film(scene, value):
+    thickness, ior, roughness = value
+    studio(scene, _film(thickness, ior, Base_Color=(0.03, 0.03, 0.03), Roughness=roughness, IOR=1.8))
+
+
+@case("LOBES", needs=with_socket(_KIND, _FILM))
+def principled_film_tinted(scene):
+    studio(scene, _film(450.0, Base_Color=_RED, Roughness=0.3, Specular_Tint=(0.4, 0.9, 0.6), Specular_IOR_Level=0.9))
+
+
+@case("LOBES", needs=with_socket(_KIND, _FILM))
+def principled_film_metal(scene):
+    """On metal, from 5.0 on."""
+    studio(scene, _film(500.0, 1.5, Base_Color=_GOLD, Metallic=1.0, Roughness=0.25, Specular_Tint=(0.8, 0.9, 0.5)))
+
+
+@variants("LOBES", values={"smooth": 0.0, "rough": 0.4}, bounces=4, needs=with_socket(_KIND, _FILM))
+def principled_film_glass(scene, roughness):
+    open_air(scene, _film(350.0, Base_Color=(0.9, 0.95, 1.0), Transmission_Weight=1.0, Roughness=roughness, IOR=1.45))
+
+
+@case("LOBES", needs=with_socket(_KIND, _FILM))
+def principled_film_varied(scene):
+    """A film whose thickness varies from none on."""
+
+    def build(nodes):
+        place = nodes.add("ShaderNodeTexCoord")
+        parted = nodes.add("ShaderNodeSeparateXYZ", place.outputs["Object"])
+        thickness = nodes.add("ShaderNodeMath", parted.outputs["Z"], 700.0, props={"operation": "MULTIPLY"})
+        return nodes.add(_KIND, Base_Color=(0.05, 0.05, 0.05), Roughness=0.2, IOR=2.0, Thin_Film_Thickness=thickness)
+
+    studio(scene, material(build))
+
+
+_WALL = "Thin Wall"
+
+
+@variants(
+    "LOBES",
+    values={"smooth": (0.0, {"quick": True}), "low": 0.15, "rough": 0.5},
+    bounces=4,
+    needs=with_socket(_KIND, _WALL),
+)
+def principled_wall_glass(scene, roughness):
+    inputs = {"Base_Color": (0.7, 0.9, 0.95), "Transmission_Weight": 1.0, "Roughness": roughness, "IOR": 1.5}
+    open_air(scene, principled(Thin_Wall=True, **inputs))
+
+
+@case("LOBES", bounces=4, needs=with_socket(_KIND, _WALL))
+def principled_wall_film(scene):
+    inputs = {"Base_Color": (0.9, 0.95, 1.0), "Transmission_Weight": 0.9, "Roughness": 0.1, "IOR": 1.7}
+    open_air(scene, _film(380.0, 1.3, Thin_Wall=True, Specular_Tint=(0.9, 0.7, 1.0), **inputs))
+
+
+@case("LOBES", bounces=4, needs=with_socket(_KIND, _WALL))
+def principled_wall_lets_lamps_through(scene):
+    """Light samples pass smooth sheets, and a sheet behind another is no bounce."""
+    open_air(scene, principled(Thin_Wall=True, Base_Color=(0.8, 0.9, 1.0), Transmission_Weight=1.0, Roughness=0.0))
+    parts.add_light(scene, "Light", "POINT", 300.0, (1.5, -2.5, 3.5), shadow_soft_size=0.0)
+
+
+@variants("LOBES", values={"back": (-0.5, 0.0), "even": (0.0, 0.0), "ahead": (0.8, 0.7)}, needs=with_socket(_KIND, _WALL))
+def principled_wall_leaf(scene, value):
+    anisotropy, roughness = value
+    inputs = {"Subsurface_Weight": 0.8, "Subsurface_Anisotropy": anisotropy, "Diffuse_Roughness": roughness}
+    studio(scene, principled(Thin_Wall=True, Base_Color=(0.4, 0.8, 0.2), Roughness=0.4, **inputs))

@@ -2,6 +2,9 @@
 
 from .node_kinds import NORMAL, TANGENT, C, F, Kind
 
+# Nanometres; most films are thin enough to be coloured.
+_FILM = {"Thin Film Thickness": ("f", 0.0, 900.0), "Thin Film IOR": ("f", 1.0, 2.0)}
+
 SHADERS = {
     "ShaderNodeBsdfDiffuse": Kind({"Color": C, "Roughness": F, "Normal": NORMAL}, {"BSDF": "s"}, weight=5.0),
     "ShaderNodeBsdfPrincipled": Kind(
@@ -11,7 +14,7 @@ SHADERS = {
             "Anisotropic Rotation": F, "Transmission Weight": F, "Coat Weight": F, "Coat Roughness": ("f", 0.15, 1.0),
             "Coat IOR": ("f", 1.0, 2.0), "Coat Tint": C, "Sheen Weight": F, "Sheen Roughness": ("f", 0.15, 1.0),
             "Sheen Tint": C, "Emission Color": C, "Emission Strength": F, "Normal": NORMAL, "Coat Normal": NORMAL,
-            "Tangent": TANGENT,
+            "Tangent": TANGENT, "Thin Wall": F, **_FILM,
         },
         {"BSDF": "s"},
         {"distribution": ("GGX", "MULTI_GGX")},
@@ -31,14 +34,14 @@ SHADERS = {
     "ShaderNodeBsdfMetallic": Kind(
         {
             "Base Color": C, "Edge Tint": C, "IOR": ("v", 0.5, 3.0), "Extinction": ("v", 0.5, 4.0),
-            "Roughness": ("f", 0.15, 0.9), "Anisotropy": F, "Rotation": F, "Normal": NORMAL, "Tangent": TANGENT,
+            "Roughness": ("f", 0.15, 0.9), "Anisotropy": F, "Rotation": F, "Normal": NORMAL, "Tangent": TANGENT, **_FILM,
         },
         {"BSDF": "s"},
         {"distribution": ("GGX", "BECKMANN", "MULTI_GGX"), "fresnel_type": ("PHYSICAL_CONDUCTOR", "F82")},
         special=("sparse",),
     ),
     "ShaderNodeBsdfGlass": Kind(
-        {"Color": C, "Roughness": ("f", 0.0, 0.6), "IOR": ("f", 1.0, 1.8), "Normal": NORMAL},
+        {"Color": C, "Roughness": ("f", 0.0, 0.6), "IOR": ("f", 1.0, 1.8), "Normal": NORMAL, **_FILM},
         {"BSDF": "s"},
         {"distribution": ("GGX", "BECKMANN", "MULTI_GGX")},
         0.7,

@@ -66,6 +66,9 @@ template <class F> struct Bsdf {
   int frame_count = 0;
   int count = 0;
   V emission{F(0.0f)}; // emission of layered lobes towards wo
+  // A smooth sheet scatters rays of the camera; other rays pass it straight: their share is no lobe.
+  B seen_by_camera = uniform<F>(true);
+  V straight{F(0.0f)};
   // Uninitialised: only the first frame_count and count entries exist.
   union {
     Frame<F> frames[kMaxFrames];

@@ -8,6 +8,7 @@
 #include "bsdf/microfacet_eval.h"
 #include "bsdf/normals.h"
 #include "bsdf/sheen.h"
+#include "bsdf/toon.h"
 #include "simd/vectors.h"
 
 namespace lancer {
@@ -28,7 +29,8 @@ template <class F> bool is_of_class(const Lobe<F> &lobe, Component rays) {
 }
 
 template <class F> bool lets_through(const Lobe<F> &lobe) {
-  return (is_facets(lobe) && refracts(lobe)) || lobe.shape == LobeShape::Dielectric || matte_transmits(lobe);
+  return (is_facets(lobe) && (refracts(lobe) || passes_through(lobe))) || lobe.shape == LobeShape::Dielectric ||
+         matte_transmits(lobe);
 }
 
 // Returns alpha_x alpha_y, or its equivalent.
@@ -68,7 +70,7 @@ template <class F> void Bsdf<F>::begin(const V &wo_, const V &ns_, const V &ng_,
   first_same[0] = WordOf<F>(0u);
   frame_count = 1;
   count = 0;
-  emission = V(F(0.0f));
+  emission = straight = V(F(0.0f));
 }
 
 template <class F> LANCER_LANE void Bsdf<F>::add(const Lobe<F> &lobe) {
@@ -219,7 +221,17 @@ BsdfValue<F> Bsdf<F>::sum(const Local &local, const Drawn &drawn, bool lit, uint
       add(lobe.component, there, smooth_value(lobe, wi, h));
       continue;
     }
+    if (lobe.shape == LobeShape::Toon) {
+      add(lobe.component, there, toon_eval(lobe, wo_l, wi, drew));
+      continue;
+    }
     const B crossing = there & through;
+    if (is_facets(lobe) && passes_through(lobe)) {
+      const V mirrored = across(wi);
+      const V facet = select(drew & drawn.has_h, drawn.h, half_vector(wo_l, mirrored));
+      add(Component::Transmission, crossing & (wo_l.z > zero), microfacet_eval_reflected(lobe, wo_l, mirrored, facet));
+      continue;
+    }
     if (is_facets(lobe) && refracts(lobe) && any(crossing)) {
       const V bent = refraction_half_vector(wo_l, wi, lobe.ior);
       add(Component::Transmission, crossing,

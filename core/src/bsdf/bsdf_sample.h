@@ -48,8 +48,15 @@ template <class F> void Bsdf<F>::draw(const Lobe<F> &lobe, B mine, F u_side, F u
     single = d.delta;
     valid = d.valid;
     has_h = !single;
+    if (passes_through(lobe))
+      wi = across(wi);
     break;
   }
+  case LobeShape::Toon:
+    wi = toon_sample(lobe, wo_l, u, v);
+    if (lobe.variant == static_cast<uint8_t>(Toon::Glossy))
+      valid = (wo_l.z > zero) & (wi.z > zero);
+    break;
   case LobeShape::Ashikhmin:
     if (any(mine & !lobe.delta))
       wi = gloss_sample(lobe, wo_l, u, v);
@@ -80,7 +87,8 @@ template <class F> void Bsdf<F>::draw(const Lobe<F> &lobe, B mine, F u_side, F u
     take_single(dielectric_sample(lobe, wo_l, u_side));
     break;
   }
-  const bool wide = lobe.shape == LobeShape::Lambert || lobe.shape == LobeShape::Matte || lobe.shape == LobeShape::Sheen;
+  const bool wide = lobe.shape == LobeShape::Lambert || lobe.shape == LobeShape::Matte || lobe.shape == LobeShape::Sheen ||
+                    lobe.shape == LobeShape::Toon;
   if (!wide) {
     // A lobe seen from behind reflects nothing; a direction sampled below the horizon is lost.
     valid = valid & (wo_l.z > zero);

@@ -98,6 +98,12 @@ template <class F> LANCER_LANE F index_from(MaskOf<F> inside, F ior) {
   return select(inside, 1.0f / outside, outside);
 }
 
+// Puts the film of a node on its facets. inside: the film lies beyond the index, by which it is scaled.
+template <class F> LANCER_LANE void cover(Lobe<F> &lobe, F thickness, F film_ior, F ior, MaskOf<F> inside) {
+  if (any(thickness > kThinnestFilm))
+    set_film(lobe, thickness, select(inside, film_ior / ior, film_ior));
+}
+
 template <class F> LANCER_LANE void add_facets(Bsdf<F> &bsdf, Lobe<F> lobe, const LobeInputs<F> &inputs, bool preserving) {
   lobe.beckmann = inputs.distribution == Facets::Beckmann;
   complete_microfacet(lobe, bsdf.wo_local[lobe.frame].z, uniform<F>(preserving));
@@ -115,6 +121,7 @@ LANCER_LANE Lobe<F> facets_of(const LobeInputs<F> &inputs, uint8_t frame, F alph
     const V color = max(inputs.color, none);
     Lobe<F> lobe = make_microfacet(Scatter::Both, frame, inputs.weight, alpha_x, alpha_y, inputs.rules);
     set_schlick(lobe, V(f0_of_ior(eta)), V(F(1.0f)), eta, color, color);
+    cover(lobe, inputs.film_thickness, inputs.film_ior, max(inputs.ior, F(kSmallestIor)), inside);
     return lobe;
   }
   const bool conductor = inputs.kind == LobeKind::Conductor;
@@ -127,6 +134,8 @@ LANCER_LANE Lobe<F> facets_of(const LobeInputs<F> &inputs, uint8_t frame, F alph
   else
     set_conductor(lobe, inputs.option == 1 ? FresnelKind::Conductor : FresnelKind::StrongConductor, max(inputs.color, none),
                   max(inputs.edge, none));
+  if (conductor)
+    cover(lobe, inputs.film_thickness, inputs.film_ior, F(1.0f), uniform<F>(false));
   return lobe;
 }
 
@@ -183,6 +192,14 @@ template <class F> LANCER_LANE void add_glass(Bsdf<F> &bsdf, const LobeInputs<F>
   add_facets(bsdf, facets_of(inputs, frame, alpha, alpha, bsdf.inside), inputs, preserving);
 }
 
+template <class F> LANCER_LANE void add_toon(Bsdf<F> &bsdf, const LobeInputs<F> &inputs) {
+  const uint8_t frame = add_frame(bsdf, wide_normal(bsdf, inputs.normal, inputs.rules));
+  const Toon variant = inputs.option == 0 ? Toon::Diffuse : Toon::Glossy;
+  Lobe<F> lobe = make_toon(colored_weight(inputs), inputs.roughness, inputs.roughness_across, variant, inputs.rules);
+  lobe.frame = frame;
+  bsdf.add(lobe);
+}
+
 // Adds the lobes of CLASSIC other than Lambert.
 template <class F> LANCER_LANE void add_classic(Bsdf<F> &bsdf, const LobeInputs<F> &inputs) {
   const uint8_t frame = add_frame(bsdf, reflecting_normal(bsdf, inputs.normal));
@@ -221,6 +238,8 @@ template <class F> void add_lobe(Bsdf<F> &bsdf, const LobeInputs<F> &inputs) {
     return add_refraction(bsdf, inputs);
   case LobeKind::Conductor:
     return add_conductor(bsdf, inputs);
+  case LobeKind::Toon:
+    return add_toon(bsdf, inputs);
   case LobeKind::Principled:
     return;
   default:

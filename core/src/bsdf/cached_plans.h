@@ -88,6 +88,7 @@ template <class F> struct LanePlans : LaneRecords<F, CachedPlan> {
     lobe.component = first.component;
     lobe.beckmann = first.beckmann;
     lobe.fresnel = first.fresnel;
+    lobe.film = first.film;
     lobe.rules = first.rules;
     lobe.shown = F(first.shown);
     lobe.alpha_x = number(LANCER_OF(lobe.alpha_x));
@@ -96,9 +97,9 @@ template <class F> struct LanePlans : LaneRecords<F, CachedPlan> {
     lobe.ior = number(LANCER_OF(lobe.ior));
     if (first.fresnel != FresnelKind::Dielectric)
       lobe.f0 = vector(LANCER_OF(lobe.f0));
-    if (first.fresnel == FresnelKind::F82)
+    if (first.fresnel == FresnelKind::F82 || first.film)
       lobe.b = vector(LANCER_OF(lobe.b));
-    if (first.fresnel == FresnelKind::Conductor || first.fresnel == FresnelKind::StrongConductor)
+    if (first.fresnel == FresnelKind::Conductor || first.fresnel == FresnelKind::StrongConductor || first.film)
       lobe.f90 = vector(LANCER_OF(lobe.f90));
     if (first.fresnel == FresnelKind::Schlick) {
       lobe.lowest = number(LANCER_OF(lobe.lowest));

@@ -90,6 +90,10 @@ template <class F> struct FacetResponse {
   LANCER_LANE MaskOf<F> is_black() const { return black(reflected) & black(through); }
 };
 
+// Schlick's curve at cosine 1/7, and the factor that gives b from a difference there.
+inline constexpr float kSix7 = 6.0f / 7.0f, kFifth = kSix7 * kSix7 * kSix7 * kSix7 * kSix7;
+inline constexpr float kEdgeScale = 7.0f / (kFifth * kSix7);
+
 template <class F> bool reflects(const Lobe<F> &lobe) { return (lobe.variant & static_cast<uint8_t>(Scatter::Reflect)) != 0; }
 template <class F> bool refracts(const Lobe<F> &lobe) { return (lobe.variant & static_cast<uint8_t>(Scatter::Refract)) != 0; }
 
@@ -119,8 +123,8 @@ template <class F> LANCER_LANE Vec3<F> conductor_response(const Lobe<F> &lobe, F
           fresnel_conductor(cos_i, lobe.f0.z, lobe.f90.z)};
 }
 
-// cos_i: of wo to the facet.
-template <class F> LANCER_LANE FacetResponse<F> facet_response(const Lobe<F> &lobe, F cos_i) {
+// Of facets without a film.
+template <class F> LANCER_LANE FacetResponse<F> bare_response(const Lobe<F> &lobe, F cos_i) {
   using V = Vec3<F>;
   FacetResponse<F> r;
   r.reflected = V(F(1.0f));
@@ -165,6 +169,20 @@ template <class F> LANCER_LANE FacetResponse<F> facet_response(const Lobe<F> &lo
   if (!reflects(lobe))
     r.reflected = V(F(0.0f));
   return r;
+}
+
+} // namespace lancer
+
+#include "bsdf/thin_film.h"
+
+namespace lancer {
+
+// cos_i: of wo to the facet.
+template <class F> LANCER_LANE FacetResponse<F> facet_response(const Lobe<F> &lobe, F cos_i) {
+  FacetResponse<F> response = bare_response(lobe, cos_i);
+  if (lobe.film)
+    add_film(lobe, cos_i, response);
+  return response;
 }
 
 } // namespace lancer

@@ -58,9 +58,10 @@ enum class LobeShape : uint8_t {
   Matte = 6,      // Oren-Nayar, Burley, velvet, translucent, Minnaert: smooth and wide, distinguished by variant
   Microfacet = 7, // GGX or Beckmann, reflection, refraction or both, smooth or rough
   Ashikhmin = 8,  // Ashikhmin-Shirley, the clear coat of 3.x
-  Sheen = 9       // microfibres
+  Sheen = 9,      // microfibres
+  Toon = 10
 };
-inline constexpr uint32_t kLobeShapes = 10;
+inline constexpr uint32_t kLobeShapes = 11;
 constexpr uint32_t shape_bit(LobeShape shape) { return 1u << static_cast<uint32_t>(shape); }
 inline constexpr uint32_t kAllShapes = (1u << kLobeShapes) - 1u;
 
@@ -68,8 +69,9 @@ inline constexpr uint32_t kAllShapes = (1u << kLobeShapes) - 1u;
 enum class Component : uint8_t { Diffuse = 0, Glossy = 1, Transmission = 2 };
 constexpr bool operator==(uint32_t number, Component component) { return number == static_cast<uint32_t>(component); }
 
-// Where the facets of Microfacet send light; stored in Lobe::variant.
-enum class Scatter : uint8_t { Reflect = 1, Refract = 2, Both = 3 };
+// Where the facets of Microfacet send light; stored in Lobe::variant. Through: as Reflect, then mirrored at the surface, as by
+// a sheet of glass.
+enum class Scatter : uint8_t { Reflect = 1, Refract = 2, Both = 3, Through = 5 };
 
 // The Fresnel curve of a microfacet: F of the half vector's cosine.
 enum class FresnelKind : uint8_t {
@@ -90,11 +92,12 @@ template <class F> struct Lobe {
   using B = MaskOf<F>;
 
   LobeShape shape = LobeShape::Lambert;
-  uint8_t variant = 0;                      // of Matte, Ashikhmin; Scatter of Microfacet
+  uint8_t variant = 0;                      // of Matte, Ashikhmin, Toon; Scatter of Microfacet
   Component component = Component::Diffuse; // of the light on wo's side, if a lobe reflects and transmits
   uint8_t frame = 0;                        // index into Bsdf::frames
   bool beckmann = false;                    // distribution of the facets; else GGX
   FresnelKind fresnel = FresnelKind::None;
+  bool film = false; // a film may cover the facets: thin_film.h
   Rules rules = Rules::Blender45;
 
   B delta = uniform<F>(false);         // a single direction: too smooth for evaluation

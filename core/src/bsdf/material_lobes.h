@@ -15,10 +15,10 @@ namespace lancer {
 struct LobeParts {
   LobeParts() = default;
   LobeParts(const LobeInputs<float> &inputs, const PrincipledInputs<float> &in);
-  bool normal = false, tangent = false;
+  bool normal = false, tangent = false, film = false, across = false;
   // Only of Principled.
   bool coat_normal = false, coat_tint = false, diffuse_roughness = false, emission = false, sheen = false, coat = false,
-       metal = false, glass = false;
+       metal = false, glass = false, sheet = false;
 };
 
 struct ReadyLobe {
@@ -64,6 +64,13 @@ LANCER_LANE constexpr bool needed(PrincipledParameter parameter, const LobeParts
   case P::sheen_roughness:
   case P::sheen_tint:
     return parts.sheen;
+  case P::film_thickness:
+  case P::film_ior:
+    return parts.film && !planned;
+  case P::thin_wall:
+  case P::wall_scattering:
+  case P::wall_forward:
+    return parts.sheet;
   case P::roughness:
   case P::ior:
   case P::specular:
@@ -110,6 +117,12 @@ template <class F> struct LaneLobes : LaneRecords<F, ReadyLobe> {
     in.edge = vector(LANCER_OF(inputs.edge));
     in.anisotropy = number(LANCER_OF(inputs.anisotropy));
     in.rotation = number(LANCER_OF(inputs.rotation));
+    if (of[0]->parts.across)
+      in.roughness_across = number(LANCER_OF(inputs.roughness_across));
+    if (of[0]->parts.film) {
+      in.film_thickness = number(LANCER_OF(inputs.film_thickness));
+      in.film_ior = number(LANCER_OF(inputs.film_ior));
+    }
     return in;
   }
   // Returns the inputs that all layers of Principled share, without those that principled() reads.
@@ -135,7 +148,7 @@ template <class F> struct LaneLobes : LaneRecords<F, ReadyLobe> {
     in.option = first.principled.option;
     // The inputs of facets are contained in their plans, where plans are kept.
     const bool planned = in.rules != Rules::Blender3 && first.has(PrincipledLayer::Gloss) &&
-                         (!parts.coat || first.has(PrincipledLayer::Coat)) && !parts.tangent;
+                         (!parts.coat || first.has(PrincipledLayer::Coat)) && !parts.tangent && !parts.sheet;
 #define LANCER_READ(kind, name, spoken, given)                                                                                 \
   if (needed(PrincipledParameter::name, parts, planned))                                                                       \
     in.name = value<ParameterKind::kind>(LANCER_OF(principled.name));
@@ -195,10 +208,11 @@ void add_described(const Material *const *materials, size_t number, const Values
     add_principled(bsdf, inputs, fixed ? ready.principled() : evaluate(*described.principled, read), ready);
 }
 
-// Adds all lobes of the material as seen from wo. out_ns, out_ng: of the surface, outwards.
+// Adds all lobes of the material as seen from wo. out_ns, out_ng: of the surface, outwards. seen_by_camera: see Bsdf.
 template <class F, class Values>
 LANCER_LANE void find_lobes(const Material *const *materials, const Values &values, MaskOf<F> hole, const Vec3<F> &wo,
-                            const Vec3<F> &out_ns, const Vec3<F> &out_ng, Bsdf<F> &bsdf) {
+                            const Vec3<F> &out_ns, const Vec3<F> &out_ng, Bsdf<F> &bsdf,
+                            MaskOf<F> seen_by_camera = uniform<F>(true)) {
   const Material &material = *materials[0];
   // Turn both normals to the viewer's side.
   const MaskOf<F> inside = dot(wo, out_ng) < F(0.0f);
@@ -208,6 +222,7 @@ LANCER_LANE void find_lobes(const Material *const *materials, const Values &valu
   if (material.normal.varies())
     ns = unit_or(Vec3<F>(values(material.normal)), ns);
   bsdf.begin(wo, ns, ng, inside, !(material.flags & MaterialFlag::NoBumpCorrection));
+  bsdf.seen_by_camera = seen_by_camera;
   for (size_t i = 0; i < material.lobes.size(); ++i)
     add_described<F>(materials, i, values, hole, bsdf);
   bsdf.complete();

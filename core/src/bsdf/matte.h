@@ -70,7 +70,15 @@ template <class F> LANCER_LANE Vec3<F> minnaert_sample(const Lobe<F> &lobe, F u,
   return select(high, above, Vec3<F>(sine * phi.cos, sine * phi.sin, cosine));
 }
 
-enum class Matte : uint8_t { OrenNayar = 0, Burley = 1, Velvet = 2, DustSheen = 3, Translucent = 4, Minnaert = 5 };
+enum class Matte : uint8_t {
+  OrenNayar = 0,
+  Burley = 1,
+  Velvet = 2,
+  DustSheen = 3,
+  Translucent = 4,
+  Minnaert = 5,
+  RoughTranslucent = 6 // OrenNayar on the other side
+};
 template <class F> bool is_matte(const Lobe<F> &lobe, Matte variant) {
   return lobe.shape == LobeShape::Matte && lobe.variant == static_cast<uint8_t>(variant);
 }
@@ -153,7 +161,9 @@ template <class F> LANCER_LANE Lobe<F> make_minnaert(const Vec3<F> &weight, F k,
 }
 
 // Translucent light counts as diffuse, as in Cycles: in passes, and for lights hidden from such rays.
-template <class F> bool matte_transmits(const Lobe<F> &lobe) { return is_matte(lobe, Matte::Translucent); }
+template <class F> bool matte_transmits(const Lobe<F> &lobe) {
+  return is_matte(lobe, Matte::Translucent) || is_matte(lobe, Matte::RoughTranslucent);
+}
 
 // Returns f cos, which is also the density of its sampler.
 template <class V> LANCER_LANE ColorValue<NumberOf<V>> lambert_eval(const V &wi) {
@@ -219,6 +229,10 @@ template <class F> LANCER_LANE ColorValue<F> matte_eval(const Lobe<F> &lobe, con
   case Matte::Minnaert: {
     const LobeValue<F> value = minnaert_eval_pdf(lobe, wi);
     return where<F>(above, {Vec3<F>(value.f), value.pdf});
+  }
+  case Matte::RoughTranslucent: {
+    const Vec3<F> mirrored(wi.x, wi.y, -wi.z);
+    return where<F>(mirrored.z > zero, oren_nayar_eval(lobe, wo, mirrored));
   }
   case Matte::Translucent:
     break;

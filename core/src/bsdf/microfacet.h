@@ -28,7 +28,8 @@ LANCER_LANE Lobe<F> make_microfacet(Scatter scatter, uint8_t frame, const Vec3<F
   Lobe<F> lobe;
   lobe.shape = LobeShape::Microfacet;
   lobe.variant = static_cast<uint8_t>(scatter);
-  lobe.component = scatter == Scatter::Refract ? Component::Transmission : Component::Glossy;
+  const bool passes = scatter == Scatter::Refract || scatter == Scatter::Through;
+  lobe.component = passes ? Component::Transmission : Component::Glossy;
   lobe.frame = frame;
   lobe.rules = rules;
   lobe.color = color;
@@ -59,9 +60,7 @@ template <class F> LANCER_LANE void set_conductor(Lobe<F> &lobe, FresnelKind kin
   lobe.f90 = k;
 }
 
-// Schlick's curve at cosine 1/7, and the factor that gives b from a difference there.
-inline constexpr float kSix7 = 6.0f / 7.0f, kFifth = kSix7 * kSix7 * kSix7 * kSix7 * kSix7;
-inline constexpr float kEdgeScale = 7.0f / (kFifth * kSix7);
+// Returns Schlick's curve at cosine 1/7.
 template <class V> LANCER_LANE V schlick_at_edge(const V &f0) {
   using F = NumberOf<V>;
   return f0 + (V(F(1.0f)) - f0) * F(kFifth);
@@ -209,6 +208,9 @@ LANCER_LANE Vec3<F> reflected_albedo(const MicrofacetPlan<F> &plan, F cos_o, con
     const F f0 = f0_of_ior(lobe.ior);
     mean = select(lobe.ior > 1.0f, (f0 + (1.0f - f0) * tables.mix(plan, cos_o)) * lobe.reflection, mean);
   }
+  // There is no table for films: they are taken as smooth.
+  if (lobe.film)
+    mean = select(film_of(lobe).thickness > kThinnestFilm, smooth.reflected, mean);
   // Before 5.2 no facet reflects in the mean where a smooth surface reflects nothing.
   return lobe.rules >= Rules::Blender52 ? mean : select(black(smooth.reflected), V(F(0.0f)), mean);
 }
@@ -216,7 +218,7 @@ LANCER_LANE Vec3<F> reflected_albedo(const MicrofacetPlan<F> &plan, F cos_o, con
 // Whether the albedo needs only the mean over the facets: it does not need the response of a smooth surface, which would not be
 // black.
 template <class F> LANCER_LANE bool needs_no_smooth_response(const Lobe<F> &lobe) {
-  return lobe.fresnel == FresnelKind::Schlick && !refracts(lobe) && !any(black(lobe.f0));
+  return lobe.fresnel == FresnelKind::Schlick && !lobe.film && !refracts(lobe) && !any(black(lobe.f0));
 }
 
 // Sets a lobe's energy, colour and albedo for wo. color: the weight of the lobe; cos_o: wo.z in the lobe's frame.

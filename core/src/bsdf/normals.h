@@ -115,7 +115,8 @@ template <class F> uint8_t add_frame(Bsdf<F> &bsdf, const Vec3<F> &n) { return a
 template <class F> bool ends_smoothly(const Lobe<F> &lobe) {
   if (is_matte(lobe, Matte::Velvet))
     return lobe.rules < Rules::Blender50;
-  return lobe.shape == LobeShape::Lambert || lobe.shape == LobeShape::Matte || lobe.shape == LobeShape::Sheen;
+  return lobe.shape == LobeShape::Lambert || lobe.shape == LobeShape::Matte || lobe.shape == LobeShape::Sheen ||
+         (lobe.shape == LobeShape::Toon && lobe.component == Component::Diffuse);
 }
 
 // Returns the lanes where bump attenuates a direction, as in Cycles. It attenuates a lobe's own samples only if the lobe

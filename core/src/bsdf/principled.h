@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bsdf/build.h"
+#include "bsdf/sheet.h"
 
 namespace lancer {
 
@@ -113,6 +114,7 @@ LANCER_LANE MicrofacetPlan<F> plan_layer(PrincipledLayer layer, const LobeInputs
     lobe = make_microfacet(Scatter::Both, 0, one, alpha, alpha, in.rules);
     set_schlick(lobe, clamp01(f0_of_ior(ior) * positive(in.specular_tint)), one, select(inside, 1.0f / ior, ior), one,
                 sqrt(clamp01(positive(in.base_color))));
+    cover(lobe, in.film_thickness, max(in.film_ior, F(kSmallestIor)), ior, inside);
     break;
   }
   default: {
@@ -120,15 +122,35 @@ LANCER_LANE MicrofacetPlan<F> plan_layer(PrincipledLayer layer, const LobeInputs
     lobe = make_microfacet(Scatter::Reflect, 0, one, grain.alpha_x, grain.alpha_y, in.rules);
     if (layer == PrincipledLayer::Metal) {
       set_f82(lobe, clamp01(positive(in.base_color)), clamp01(positive(in.specular_tint)));
+      if (in.rules >= Rules::Blender50)
+        cover(lobe, in.film_thickness, max(in.film_ior, F(kSmallestIor)), F(1.0f), uniform<F>(false));
     } else {
       F f0;
       const F eta = plastic_ior(in, f0);
       set_schlick(lobe, clamp01(f0 * positive(in.specular_tint)), one, eta, one, none);
+      cover(lobe, in.film_thickness, max(in.film_ior, F(kSmallestIor)), F(1.0f), uniform<F>(false));
     }
     break;
   }
   }
   return plan_microfacet(lobe, uniform<F>(preserving));
+}
+
+// Returns the facets of a sheet of glass, as seen from outside, without a weight.
+template <class F> LANCER_LANE Lobe<F> sheet_facets(const PrincipledInputs<F> &in, uint8_t frame) {
+  using V = Vec3<F>;
+  const V one(F(1.0f));
+  const F alpha = alpha_of(in.roughness), ior = max(in.ior, F(kSmallestIor));
+  Lobe<F> lobe = make_microfacet(Scatter::Both, frame, one, alpha, alpha, in.rules);
+  set_schlick(lobe, f0_of_ior(ior) * positive(in.specular_tint), one, ior, one, one);
+  cover(lobe, in.film_thickness, max(in.film_ior, F(kSmallestIor)), ior, uniform<F>(false));
+  return lobe;
+}
+
+// Whether the plastic layer has an effect.
+template <class F> LANCER_LANE MaskOf<F> has_gloss(const PrincipledInputs<F> &in) {
+  F f0;
+  return (plastic_ior(in, f0) != F(1.0f)) | (in.film_thickness > kThinnestFilm);
 }
 
 // Stands for plans when every layer is planned at the hit.
@@ -148,6 +170,8 @@ void add_layers(Bsdf<F> &bsdf, const LobeInputs<F> &inputs, const PrincipledInpu
   // Metal, glass and plastic share a normal and a roughness, along a tangent if anisotropic.
   const MaskOf<F> stretched = base_grain(inputs, in).stretched;
   const V tangent = any(stretched) ? select(stretched, turn_about(inputs.tangent, n, in.anisotropic_rotation), none) : none;
+  // Glass and diffuse light of sheets, whose lanes have other lobes.
+  const MaskOf<F> in_sheet = in.thin_wall > 0.0f;
   int base_frame = -1;
   for (const LayerRow &row : kLayers) {
     const F share = share_of(row.layer, in);
@@ -176,6 +200,12 @@ void add_layers(Bsdf<F> &bsdf, const LobeInputs<F> &inputs, const PrincipledInpu
       const MaskOf<F> bent = !same(n, n_reflect);
       frame = any(bent) || base_frame < 0 ? add_frame(bsdf, n, select(bent, none, tangent)) : static_cast<uint8_t>(base_frame);
       const V color = positive(in.base_color);
+      const F shared = select(in_sheet, clamp01(in.wall_scattering), F(0.0f));
+      if (any(shared > kLeastLayer)) {
+        const V both = select(shared > kLeastLayer, shared * (clamp01(color) * weight), none);
+        add_matt_sheet(bsdf, frame, both, clamp01(color), in, cos_in(bsdf, frame));
+        weight = select(shared > kLeastLayer, weight * (1.0f - shared), weight);
+      }
       lobe = make_diffuse(color * weight, color, clamp01(in.diffuse_roughness), in.option == 1, cos_in(bsdf, frame));
       lobe.rules = in.rules;
       break;
@@ -190,13 +220,16 @@ void add_layers(Bsdf<F> &bsdf, const LobeInputs<F> &inputs, const PrincipledInpu
       }
       if (row.layer == PrincipledLayer::Gloss && !plans.has(row.layer)) {
         // No gloss if the surface does not bend light.
-        F f0;
-        there = there & (plastic_ior(in, f0) != F(1.0f));
+        there = there & has_gloss(in);
         if (!any(there))
           continue;
       }
       const F cos_o = cos_in(bsdf, frame);
-      const V color = weighted(row.layer == PrincipledLayer::Gloss ? weight : share * weight);
+      V color = weighted(row.layer == PrincipledLayer::Gloss ? weight : share * weight);
+      if (row.layer == PrincipledLayer::Glass && any(in_sheet)) {
+        add_glass_sheet(bsdf, sheet_facets(in, frame), select(in_sheet, color, none), in, cos_o);
+        color = select(in_sheet, none, color);
+      }
       lobe = plans.has(row.layer) ? plans.seen(row.layer, cos_o, color)
                                   : seen_from(plan_layer(row.layer, inputs, in, bsdf.inside), cos_o, color, AlbedoLookup<F>());
       break;

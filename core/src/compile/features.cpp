@@ -16,8 +16,20 @@ bool is_glass(const LobeDescription &lobe) {
          (lobe.principled && may_be_positive(lobe.principled->transmission));
 }
 
+namespace {
+
+// Whether the diffuse light of a sheet may pass to its other side.
+bool is_matt_sheet(const PrincipledDescription &principled) {
+  return may_be_positive(principled.thin_wall) && may_be_positive(principled.wall_scattering);
+}
+
+} // namespace
+
 bool lets_light_through(const Material &material) {
-  return material.is_transparent() || std::any_of(material.lobes.begin(), material.lobes.end(), is_glass);
+  return material.is_transparent() ||
+         std::any_of(material.lobes.begin(), material.lobes.end(), [](const LobeDescription &lobe) {
+           return is_glass(lobe) || (lobe.principled && is_matt_sheet(*lobe.principled));
+         });
 }
 
 namespace {
@@ -71,6 +83,8 @@ uint32_t shapes_of(LobeKind kind) {
   case LobeKind::Translucent:
   case LobeKind::Minnaert:
     return shape_bit(LobeShape::Matte);
+  case LobeKind::Toon:
+    return shape_bit(LobeShape::Toon);
   case LobeKind::Principled:
     return shape_bit(LobeShape::Lambert) | shape_bit(LobeShape::Matte) | shape_bit(LobeShape::Microfacet) |
            shape_bit(LobeShape::Ashikhmin) | shape_bit(LobeShape::Sheen);
@@ -104,8 +118,8 @@ bool uses_images(const Program &program) {
 // Whether some layer of the Principled BSDF may have facets.
 bool may_reflect(const PrincipledDescription &principled) {
   const bool plastic = may_be_positive(principled.specular) && (principled.ior.varies() || principled.ior.value.x != 1.0f);
-  return plastic || may_be_positive(principled.metallic) || may_be_positive(principled.transmission) ||
-         may_be_positive(principled.coat);
+  return plastic || may_be_positive(principled.film_thickness) || may_be_positive(principled.metallic) ||
+         may_be_positive(principled.transmission) || may_be_positive(principled.coat);
 }
 
 // Returns the shapes that a Principled lobe can become, without those of its absent layers.
@@ -116,7 +130,7 @@ uint32_t principled_shapes(const PrincipledDescription &principled) {
   shapes &= ~shape_bit(LobeShape::Ashikhmin);
   if (!may_reflect(principled))
     shapes &= ~shape_bit(LobeShape::Microfacet);
-  if (!may_be_positive(principled.diffuse_roughness))
+  if (!may_be_positive(principled.diffuse_roughness) && !is_matt_sheet(principled))
     shapes &= ~shape_bit(LobeShape::Matte);
   if (!may_be_positive(principled.sheen))
     shapes &= ~shape_bit(LobeShape::Sheen);
@@ -179,12 +193,13 @@ Features find_features(const Description &description) {
 }
 
 std::string feature_names(const Features &features) {
-  static const char *const shapes[] = {"lambert",     "beckmann", "mirror",     "dielectric", "phong",
-                                       "blinn-phong", "matte",    "microfacet", "ashikhmin",  "sheen"};
-  static const char *const bits[] = {
-      "transparency",  "triangles",   "instances",  "spheres",      "planes",   "cylinders",   "cones",
-      "point-lights",  "spot-lights", "sun-lights", "area-lights",  "emitters", "environment", "environment-map",
-      "vertex-colors", "nodes",       "textures",   "displacement", "holdout",  "visibility",  "glass"};
+  static const char *const shapes[] = {"lambert", "beckmann",   "mirror",    "dielectric", "phong", "blinn-phong",
+                                       "matte",   "microfacet", "ashikhmin", "sheen",      "toon"};
+  static const char *const bits[] = {"transparency", "triangles", "instances",    "spheres",         "planes",
+                                     "cylinders",    "cones",     "point-lights", "spot-lights",     "sun-lights",
+                                     "area-lights",  "emitters",  "environment",  "environment-map", "vertex-colors",
+                                     "nodes",        "textures",  "displacement", "holdout",         "visibility",
+                                     "glass",        "portals"};
   static_assert(std::size(shapes) == kLobeShapes);
   std::string text;
   const auto add = [&](const char *name) {

@@ -58,8 +58,10 @@ size_t add_principled(const LobeDescription &lobe, const PrincipledDescription &
     frames.reflecting(lobe.normal);
   if (!old)
     frames.wide(lobe.normal);
+  // Sheets have two lobes instead of glass, and two more of diffuse light.
+  const size_t sheet = may_be_positive(in.thin_wall) ? 4 : 0;
   // Before Blender 4, plastic and metal are one lobe, and glass can be two.
-  return size_t(sheen) + size_t(coat) + size_t(metal && !old) + (glass ? (old ? 2 : 1) : 0) + 2;
+  return sheet + size_t(sheen) + size_t(coat) + size_t(metal && !old) + (glass ? (old ? 2 : 1) : 0) + 2;
 }
 
 size_t add_lobe(const LobeDescription &lobe, Frames &frames) {
@@ -71,6 +73,7 @@ size_t add_lobe(const LobeDescription &lobe, Frames &frames) {
   case LobeKind::Diffuse:
   case LobeKind::Sheen:
   case LobeKind::Minnaert:
+  case LobeKind::Toon:
     old ? frames.reflecting(lobe.normal) : frames.wide(lobe.normal);
     return 1;
   case LobeKind::Glossy:
@@ -120,14 +123,15 @@ bool vary(std::initializer_list<const Parameter *> parameters) {
 // Whether nodes change the plan of a layer.
 bool varies(PrincipledLayer layer, const LobeDescription &lobe) {
   const PrincipledDescription &p = *lobe.principled;
-  const bool grain = vary({&p.roughness, &p.anisotropic, &lobe.tangent});
+  const bool film = may_be_positive(p.film_thickness) && vary({&p.film_thickness, &p.film_ior});
+  const bool grain = vary({&p.roughness, &p.anisotropic, &lobe.tangent}) || film;
   switch (layer) {
   case PrincipledLayer::Coat:
     return vary({&p.coat_roughness, &p.coat_ior});
   case PrincipledLayer::Metal:
     return grain || vary({&p.base_color, &p.specular_tint});
   case PrincipledLayer::Glass:
-    return vary({&p.roughness, &p.ior, &p.specular_tint, &p.base_color});
+    return film || vary({&p.roughness, &p.ior, &p.specular_tint, &p.base_color});
   default:
     return grain || vary({&p.ior, &p.specular, &p.specular_tint});
   }
@@ -152,9 +156,8 @@ void cache_layers(const LobeDescription &lobe, ReadyLobe &ready) {
     const bool may_be_there = share_of(row.layer, ready.principled) > kLeastLayer || (share && share->varies());
     if (!row.facets || !may_be_there || varies(row.layer, lobe))
       continue;
-    // A plastic layer with an index of refraction of 1 is absent.
-    float f0;
-    if (row.layer == PrincipledLayer::Gloss && plastic_ior(ready.principled, f0) == 1.0f)
+    // A plastic layer with an index of refraction of 1 is absent, unless it has a film.
+    if (row.layer == PrincipledLayer::Gloss && !has_gloss(ready.principled))
       continue;
     for (const bool inside : {false, true})
       ready.plans[inside][static_cast<int>(row.layer)] = cached(plan_layer(row.layer, ready.inputs, ready.principled, inside));
@@ -179,8 +182,11 @@ LobeParts::LobeParts(const LobeInputs<float> &inputs, const PrincipledInputs<flo
   const bool is_principled = inputs.kind == LobeKind::Principled;
   normal = inputs.normal != none;
   tangent = inputs.tangent != none && (!is_principled || in.anisotropic > 0.0f);
+  across = inputs.roughness_across != 0.0f;
+  film = (is_principled ? in.film_thickness : inputs.film_thickness) > kThinnestFilm;
   if (!is_principled)
     return;
+  sheet = in.thin_wall > 0.0f;
   coat_normal = in.coat_normal != none;
   coat_tint = in.coat_tint != glm::vec3(1.0f);
   diffuse_roughness = in.diffuse_roughness != 0.0f;
@@ -201,8 +207,9 @@ std::string ReadyLobe::code() const {
   add(is_principled ? principled.option : inputs.option);
   for (const auto &plan : plans[0])
     add(plan != nullptr);
-  for (const bool part : {parts.normal, parts.tangent, parts.coat_normal, parts.coat_tint, parts.diffuse_roughness,
-                          parts.emission, parts.sheen, parts.coat, parts.metal, parts.glass})
+  for (const bool part :
+       {parts.normal, parts.tangent, parts.coat_normal, parts.coat_tint, parts.diffuse_roughness, parts.emission, parts.sheen,
+        parts.coat, parts.metal, parts.glass, parts.film, parts.across, parts.sheet})
     add(part);
   return code;
 }

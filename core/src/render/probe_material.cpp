@@ -81,17 +81,19 @@ uint32_t kind_of(const Lobe<float> &lobe) {
   case LobeShape::BlinnPhong:
     return LANCER_BLINN_PHONG;
   case LobeShape::Matte:
-    return lobe.variant == uint8_t(Matte::Translucent) ? LANCER_TRANSLUCENT
-           : lobe.variant == uint8_t(Matte::Minnaert)  ? LANCER_MINNAERT
-                                                       : LANCER_DIFFUSE;
+    return matte_transmits(lobe)                      ? LANCER_TRANSLUCENT
+           : lobe.variant == uint8_t(Matte::Minnaert) ? LANCER_MINNAERT
+                                                      : LANCER_DIFFUSE;
   case LobeShape::Microfacet:
-    return lobe.variant == uint8_t(Scatter::Both)      ? LANCER_GLASS
-           : lobe.variant == uint8_t(Scatter::Refract) ? LANCER_REFRACTION
-                                                       : LANCER_GLOSSY;
+    return lobe.variant == uint8_t(Scatter::Both)   ? LANCER_GLASS
+           : refracts(lobe) || passes_through(lobe) ? LANCER_REFRACTION
+                                                    : LANCER_GLOSSY;
   case LobeShape::Ashikhmin:
     return LANCER_GLOSSY;
   case LobeShape::Sheen:
     return LANCER_SHEEN;
+  case LobeShape::Toon:
+    return LANCER_TOON;
   }
   return LANCER_LAMBERT;
 }

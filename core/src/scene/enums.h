@@ -118,4 +118,9 @@ struct MaterialFlag { enum : uint32_t {
   X(Amount, sheen, "sheen", 0.0f)                                                                                              \
   X(Share, sheen_roughness, "sheen roughness", 0.5f)                                                                           \
   X(Color, sheen_tint, "sheen tint", 1.0f)                                                                                     \
-  X(Vector, emission, "emission", 0.0f)
+  X(Vector, emission, "emission", 0.0f)                                                                                        \
+  X(Amount, film_thickness, "film thickness", 0.0f)                                                                            \
+  X(Index, film_ior, "film IOR", 1.33f)                                                                                        \
+  X(Share, thin_wall, "thin wall", 0.0f)                                                                                       \
+  X(Share, wall_scattering, "wall scattering", 0.0f)                                                                           \
+  X(Share, wall_forward, "wall forward", 0.5f)

@@ -127,6 +127,15 @@ LobeDescription read_lobe(const MaterialReader &reader, const lancer_lobe &given
     lobe.shininess = reader.read_scalar("k", given.shininess, 0.0f, 1e8f, 1.0f);
   if (lobe.kind == LobeKind::Conductor)
     lobe.edge = reader.read_color("edge", given.edge, f82 ? 1.0f : kBrightest);
+  if (lobe.kind == LobeKind::Toon) {
+    lobe.roughness = reader.read_share("size", given.roughness, 0.5f);
+    lobe.roughness_across = reader.read_share("smooth", given.roughness_across);
+  }
+  if (lobe.kind == LobeKind::Glass || lobe.kind == LobeKind::Conductor) {
+    lobe.film_thickness = reader.read_scalar("film thickness", given.film_thickness, 0.0f, kBrightest, 0.0f);
+    if (may_be_positive(lobe.film_thickness))
+      lobe.film_ior = reader.read_ior("film IOR", given.film_ior);
+  }
   if (metal) {
     lobe.anisotropy = reader.read_scalar("anisotropy", given.anisotropy, -1.0f, 1.0f, 0.0f);
     lobe.rotation = reader.read_scalar("rotation", given.rotation, -kBrightest, kBrightest, 0.0f);
@@ -155,14 +164,23 @@ void check_lobe(const std::string &object, const lancer_lobe &lobe, uint32_t i) 
 
 // Collects all parameters of a lobe.
 void collect(const LobeDescription &lobe, std::vector<Parameter> &parameters) {
-  parameters.insert(parameters.end(), {lobe.weight, lobe.color, lobe.roughness, lobe.ior, lobe.shininess, lobe.edge,
-                                       lobe.anisotropy, lobe.rotation, lobe.normal, lobe.tangent});
+  parameters.insert(parameters.end(),
+                    {lobe.weight, lobe.color, lobe.roughness, lobe.ior, lobe.shininess, lobe.edge, lobe.anisotropy,
+                     lobe.rotation, lobe.normal, lobe.tangent, lobe.roughness_across, lobe.film_thickness, lobe.film_ior});
   if (!lobe.principled)
     return;
   const PrincipledDescription &p = *lobe.principled;
 #define LANCER_COLLECT(kind, name, spoken, given) parameters.push_back(p.name);
   LANCER_PRINCIPLED_PARAMETERS(LANCER_COLLECT)
 #undef LANCER_COLLECT
+}
+
+// Whether a sheet of glass may be so smooth that rays pass it straight: by its facets, or by an index near 1. A sheet beyond
+// both limits has an alpha above 1e-4.
+bool may_be_smooth_sheet(const PrincipledDescription &p) {
+  constexpr float kRoughSheet = 0.1f, kBentSheet = 1.01f;
+  const bool smooth = p.roughness.varies() || p.ior.varies() || p.roughness.value.x < kRoughSheet || p.ior.value.x < kBentSheet;
+  return may_be_positive(p.thin_wall) && may_be_positive(p.transmission) && smooth;
 }
 
 void make_schedules(Material &material) {

@@ -28,7 +28,7 @@ struct LobeDescription {
   Facets distribution = Facets::Ggx;
   uint32_t option = 0;
   Parameter weight{glm::vec3(1.0f)}, color, roughness, ior{glm::vec3(1.5f)}, shininess, edge{glm::vec3(1.0f)}, anisotropy,
-      rotation, normal, tangent;
+      rotation, normal, tangent, roughness_across, film_thickness, film_ior{glm::vec3(1.33f)};
   std::shared_ptr<const PrincipledDescription> principled;
 };
 
@@ -51,14 +51,20 @@ struct Material {
   Schedule displacement_nodes;
 
   bool layered_emission = false;                       // a Principled lobe emits
+  bool has_sheets = false;                             // a smooth sheet may let rays pass straight
   bool fixed() const { return program.nodes.empty(); } // no node decides anything
   bool emits() const { return layered_emission || emission.varies() || emission.value != glm::vec3(0.0f); }
   bool displaces() const { return displacement.varies() || displacement.value != glm::vec3(0.0f); }
-  bool is_transparent() const { return transmittance.varies() || transmittance.value != glm::vec3(0.0f); }
+  bool is_transparent() const { return has_sheets || transmittance.varies() || transmittance.value != glm::vec3(0.0f); }
 };
 
 // For a scalar parameter.
 inline bool may_be_positive(const Parameter &parameter) { return parameter.varies() || parameter.value.x > 0.0f; }
+
+// Whether a lobe beside Principled may have a film.
+inline bool has_film(const LobeDescription &lobe) {
+  return (lobe.kind == LobeKind::Glass || lobe.kind == LobeKind::Conductor) && may_be_positive(lobe.film_thickness);
+}
 
 // Clamps; NaN becomes low.
 template <class F> LANCER_LANE F within(F value, float low, float high) {
@@ -144,6 +150,12 @@ LANCER_LANE LobeInputs<F> evaluate(const LobeDescription &lobe, const ParameterR
     inputs.edge = read.color(lobe.edge, f82 ? 1.0f : kBrightest);
   inputs.anisotropy = read.scalar(lobe.anisotropy, -0.99f, 0.99f);
   inputs.rotation = read.turns(lobe.rotation);
+  if (lobe.kind == LobeKind::Toon)
+    inputs.roughness_across = read.share(lobe.roughness_across);
+  if (has_film(lobe)) {
+    inputs.film_thickness = read.scalar(lobe.film_thickness, 0.0f, kBrightest);
+    inputs.film_ior = read.ior(lobe.film_ior, kSmallestIor);
+  }
   return inputs;
 }
 template <class F, class Values>

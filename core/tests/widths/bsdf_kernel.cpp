@@ -70,6 +70,9 @@ LobeInputs<F> lobe_of(const Described *of) {
   LANCER_PUT(edge);
   LANCER_PUT(anisotropy);
   LANCER_PUT(rotation);
+  LANCER_PUT(roughness_across);
+  LANCER_PUT(film_thickness);
+  LANCER_PUT(film_ior);
   LANCER_PUT(normal);
   LANCER_PUT(tangent);
 #undef LANCER_PUT

@@ -6,17 +6,19 @@
 
 namespace lancer {
 
-void Shader::shade(const Surface &surface, const View &view, Shaded &result) {
+void Shader::shade(const Surface &surface, const View &view, Shaded &result, bool seen_by_camera) {
   result.transmittance = glm::vec3(0.0f);
   result.material = surface.material == kNone ? nullptr : &scene_.materials[surface.material];
   static const Material nothing;
   const Material *const material = result.material ? result.material : &nothing;
   // Evaluate the nodes, then build the lobes as seen from wo.
   nodes_.run(material->program, material->surface_nodes, surface, view);
-  find_lobes<float>(&material, PlaceValues{nodes_.values()}, false, view.wo, surface.ns, surface.ng, result.bsdf);
+  find_lobes<float>(&material, PlaceValues{nodes_.values()}, false, view.wo, surface.ns, surface.ng, result.bsdf,
+                    seen_by_camera);
   result.emission = nodes_.value(material->emission) + result.bsdf.emission;
   if (material->is_transparent())
     result.transmittance = glm::max(nodes_.value(material->transmittance), 0.0f);
+  result.transmittance += result.bsdf.straight;
 }
 
 glm::vec3 Shader::transmittance(const Ray &ray, const Hit &hit, const LightPath<float> &path) {

@@ -25,7 +25,8 @@ public:
   Shader(const Scene &scene, const Camera *camera)
       : scene_(scene), nodes_(scene.node_scene(camera), most_nodes(scene.materials)) {}
 
-  void shade(const Surface &surface, const View &view, Shaded &result);
+  // seen_by_camera: see Bsdf.
+  void shade(const Surface &surface, const View &view, Shaded &result, bool seen_by_camera = true);
   // Returns the share of a shadow ray's light that passes straight through. path: of the ray up to there.
   glm::vec3 transmittance(const Ray &ray, const Hit &hit, const LightPath<float> &path);
   // Whether the surface is present at a hit on a mesh whose cutout has may_end set. Light passes an absent surface as if there
@@ -39,6 +40,7 @@ public:
 private:
   const Scene &scene_;
   MaterialNodes nodes_;
+  Shaded shaded_;
 };
 
 } // namespace lancer

@@ -43,6 +43,7 @@ uint32_t SurfaceStage::add(const Ray &ray, const Hit &hit, const Material &mater
   materials_.material[lane] = &material;
   materials_.through[lane] = material.is_transparent() ? mean(transmittance_[lane]) : 0.0f;
   materials_.ends |= uint32_t{ends} << lane;
+  materials_.seen_by_camera |= uint32_t{(ray.kinds & RayKind::Camera) != 0} << lane;
   hits_.used |= bit;
   hits_.placement[lane] = instance.placement();
   if (instance.kind == ShapeKind::Mesh) {
@@ -179,6 +180,10 @@ void SurfaceStage::make_opaque() { std::fill_n(transmittance_, count_, glm::vec3
 void SurfaceStage::build_lobes() {
   lobes_.used = hits_.used;
   kernel_.build(surfaces_, materials_, lobes_);
+  for (uint32_t sheets = lobes_.sheets; sheets != 0; sheets &= sheets - 1) {
+    const uint32_t lane = uint32_t(std::countr_zero(sheets));
+    transmittance_[lane] += get(lobes_.straight, lane);
+  }
 }
 
 void SurfaceStage::describe() {
@@ -191,7 +196,7 @@ void SurfaceStage::describe() {
 void SurfaceStage::clear() {
   count_ = 0;
   hits_.used = hits_.on_mesh = hits_.smooth = hits_.exact = hits_.on_plane = hits_.on_cylinder = hits_.on_cone = 0;
-  materials_.ends = 0;
+  materials_.ends = materials_.seen_by_camera = 0;
 }
 
 Surface SurfaceStage::surface(uint32_t lane) const {

@@ -43,6 +43,7 @@ struct alignas(64) MaterialBlock {
   const float (*values)[4][kBlockLanes] = nullptr; // of nodes, four floats for every lane, by ask_nodes()
   uint32_t holes = 0;                              // bits of lanes: lobes are hidden by a hole; by cut_holdouts()
   uint32_t ends = 0;                               // bits of lanes: the surface scatters no light
+  uint32_t seen_by_camera = 0;                     // bits of lanes, by add()
   bool shares = false;                             // diffuse and glossy shares of light are wanted
 };
 
@@ -51,11 +52,13 @@ struct alignas(64) LobeBlock {
   Floats ns[3], ng[3];
   Floats emission[3];           // of layered lobes; SurfaceStage::emission() adds that of the material
   Floats pass;                  // share of paths that pass straight through; the others are scattered
+  Floats straight[3];           // in lanes of sheets: Bsdf::straight
   std::byte *storage = nullptr; // of the lobes of all lanes: see lobe_lanes.h
   // Each of the following is one bit per lane.
   uint32_t used = 0;
   uint32_t transmits = 0; // some lobe scatters light to the other side
   uint32_t scatters = 0;  // into more than single directions
+  uint32_t sheets = 0;    // some light passes a smooth sheet straight
   bool shares = false;    // as in MaterialBlock
 };
 

@@ -61,7 +61,7 @@ struct NodeValues {
 
 // Returns the share of paths that pass straight through instead of being scattered.
 LANCER_LANE F share_passing(const MaterialBlock &materials, int first, const Bsdf<F> &bsdf) {
-  const F zero(0.0f), through = load(materials.through + first);
+  const F zero(0.0f), through = load(materials.through + first) + mean(bsdf.straight);
   const M passes = through > zero;
   if (!any(passes))
     return zero;
@@ -69,7 +69,7 @@ LANCER_LANE F share_passing(const MaterialBlock &materials, int first, const Bsd
 }
 
 void build(const SurfaceBlock &surfaces, const MaterialBlock &materials, LobeBlock &lobes) {
-  lobes.transmits = lobes.scatters = 0;
+  lobes.transmits = lobes.scatters = lobes.sheets = 0;
   lobes.shares = materials.shares;
   for (int first = 0; first < kBlockLanes; first += kLanes) {
     if (!(lobes.used >> first))
@@ -77,11 +77,16 @@ void build(const SurfaceBlock &surfaces, const MaterialBlock &materials, LobeBlo
     Bsdf<F> &bsdf = *new (&lobes_of(lobes, first)) Bsdf<F>;
     bsdf.shares = materials.shares;
     find_lobes<F>(materials.material + first, NodeValues{materials, first}, some(materials.holes, first),
-                  load3(surfaces.wo, first), load3(surfaces.ns, first), load3(surfaces.ng, first), bsdf);
+                  load3(surfaces.wo, first), load3(surfaces.ns, first), load3(surfaces.ng, first), bsdf,
+                  some(materials.seen_by_camera, first));
     store3(lobes.ns, first, bsdf.ns);
     store3(lobes.ng, first, bsdf.ng);
     store3(lobes.emission, first, bsdf.emission);
     store(lobes.pass + first, share_passing(materials, first, bsdf));
+    if (const M sheets = !black(bsdf.straight); any(sheets)) {
+      store3(lobes.straight, first, bsdf.straight);
+      lobes.sheets |= placed_bits(sheets, first) & lobes.used;
+    }
     lobes.transmits |= placed_bits(bsdf.transmits, first);
     lobes.scatters |= placed_bits(bsdf.smooth, first);
   }
