@@ -47,6 +47,7 @@ class Struct(IntEnum):
     DENOISED_ERROR = 21
     RANGE = 22
     PART = 23
+    PORTAL = 24
 
 
 class NormalDomain(IntEnum):

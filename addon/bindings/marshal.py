@@ -139,7 +139,15 @@ def _lobe(lobe):
 
 
 def material(m):
-    return _struct(abi.Material, m, lobes=_many(abi.Lobe, map(_lobe, m.lobes)), lobe_count=len(m.lobes), **_nodes(m))
+    return _struct(
+        abi.Material,
+        m,
+        lobes=_many(abi.Lobe, map(_lobe, m.lobes)),
+        lobe_count=len(m.lobes),
+        portals=_many(abi.Portal, (_struct(abi.Portal, portal) for portal in m.portals)),
+        portal_count=len(m.portals),
+        **_nodes(m),
+    )
 
 
 def world(w):

@@ -110,9 +110,16 @@ class Lobe(Parameters, struct=structs.Lobe):
 
 @register
 @dataclass(frozen=True, eq=False)
+class Portal(Parameters, struct=structs.Portal):
+    moves: int = 0
+
+
+@register
+@dataclass(frozen=True, eq=False)
 class Material(Parameters, struct=structs.Material):
     name: str = ""
     lobes: tuple[Lobe, ...] = (Lobe(),)
+    portals: tuple[Portal, ...] = ()
     nodes: tuple[Node, ...] = ()
     flags: int = 0  # MaterialFlag
     material_index: int = 0
@@ -120,6 +127,7 @@ class Material(Parameters, struct=structs.Material):
     def __post_init__(self):
         super().__post_init__()
         self.set("lobes", tuple(self.lobes))
+        self.set("portals", tuple(self.portals))
         self.set("nodes", tuple(self.nodes))
 
 

@@ -25,7 +25,17 @@ from .enums import (
 )
 from .npz import SnapshotError, load_npz, register, save_npz
 from .record import Record, array
-from .shading import Image, Lobe, Material, Node, NodeRef, Parameters, Principled, World  # noqa: F401 - all records have one address
+from .shading import (  # noqa: F401 - all records have one address
+    Image,
+    Lobe,
+    Material,
+    Node,
+    NodeRef,
+    Parameters,
+    Portal,
+    Principled,
+    World,
+)
 from .structs import SETTINGS
 
 _IDENTITY = np.eye(4)[:3]

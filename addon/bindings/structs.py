@@ -159,15 +159,30 @@ class Lobe(Structure):
     ]
 
 
+class Portal(Structure):
+    """A part of a surface that light enters to go on elsewhere, as Cycles' Ray Portal."""
+
+    _fields_ = [
+        ("moves", c_uint32),
+        ("reserved", c_uint32),
+        ("weight", Parameter),
+        ("position", Parameter),
+        ("direction", Parameter),
+    ]
+
+
 class Material(Structure):
     _fields_ = [
         ("name", c_char_p),
         ("lobes", POINTER(Lobe)),
         ("nodes", POINTER(Node)),
+        ("portals", POINTER(Portal)),
         ("lobe_count", c_uint32),
         ("node_count", c_uint32),
         ("material_index", c_uint32),
         ("flags", c_uint32),
+        ("portal_count", c_uint32),
+        ("reserved", c_uint32),
         ("emission", Parameter),
         ("transmittance", Parameter),
         ("holdout", Parameter),
@@ -465,6 +480,7 @@ STRUCTS = {
     Struct.DENOISED_ERROR: DenoisedError,
     Struct.RANGE: Range,
     Struct.PART: Part,
+    Struct.PORTAL: Portal,
 }
 
 # Kind and default of each parameter, from lancer.h.
@@ -507,6 +523,14 @@ PARAMETERS = {
         "rotation": ("turns", 0.0),
         "normal": ("direction", (0.0, 0.0, 0.0)),
         "tangent": ("direction", (0.0, 0.0, 0.0)),
+        "roughness_across": ("share", 0.0),
+        "film_thickness": ("amount", 0.0),
+        "film_ior": ("index", 1.33),
+    },
+    Portal: {
+        "weight": ("color", (0.0, 0.0, 0.0)),
+        "position": ("vector", (0.0, 0.0, 0.0)),
+        "direction": ("vector", (0.0, 0.0, 0.0)),
     },
     Material: {
         "emission": ("color", (0.0, 0.0, 0.0)),

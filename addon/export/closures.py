@@ -138,8 +138,14 @@ def _toon(surface, site, weight):
 
 
 def _portal(surface, site, weight):
-    surface.graph.tell(site, "Ray Portal is not supported, rays pass straight through")
-    _transparent(surface, site, weight)
+    graph = surface.graph
+    # Cycles reads the position from a link alone; without one, light goes on where it is.
+    position = graph.linked(site, ("Position",), None)
+    surface.send_on(
+        graph.multiply(surface.color(site, default=(1.0, 1.0, 1.0)), weight),
+        position,
+        graph.parameter(site, ("Direction",), _NONE, kind="vector"),
+    )
 
 
 def _volume(surface, site, weight):

@@ -177,6 +177,7 @@ def _from_nodes(material, graph):
     return {
         **values,
         "lobes": surface.lobes,
+        "portals": surface.portals,
         "ambient": surface.ambient,
         "emission": _color(surface.emission),
         "transmittance": _color(surface.transmittance),

@@ -34,6 +34,7 @@ class Surface:
         self.estimated = _NONE
         self._share = 1.0  # estimated weight of the current closure
         self._lobes = []
+        self._portals = []
 
     @property
     def lobes(self):
@@ -43,6 +44,14 @@ class Surface:
                 f"{graph.owner}: has {len(self._lobes)} lobes, the first {_MAX_LOBES} are used", "feature:many lobes"
             )
         return tuple(self._lobes[:_MAX_LOBES])
+
+    @property
+    def portals(self):
+        if len(self._portals) > _MAX_LOBES:
+            graph = self.graph
+            text = f"has {len(self._portals)} portals, rays pass those beyond the first {_MAX_LOBES} straight"
+            graph.messages.add(f"{graph.owner}: {text}", "feature:many portals")
+        return tuple(self._portals[:_MAX_LOBES])
 
     def read(self, site, socket):
         """Add all closures upstream of a shader socket."""
@@ -119,6 +128,15 @@ class Surface:
 
     def transmit(self, share):
         self.transmittance = self.graph.add(self.transmittance, share)
+
+    def send_on(self, weight, position, direction):
+        """Let a share of the light go on elsewhere. position: None is where it is; direction: (0, 0, 0) is straight on."""
+        if is_constant(weight, 0.0):
+            return
+        self.transmit(weight)
+        place = {} if position is None else {"moves": 1, "position": position}
+        weight = weight if isinstance(weight, NodeRef) else triple(weight)
+        self._portals.append(snapshot.Portal(weight=weight, direction=direction, **place))
 
     def add_ambient(self, color):
         self.ambient = self.graph.add(self.ambient, color)

@@ -5,10 +5,11 @@ from __future__ import annotations
 import dataclasses
 
 from ..bindings.enums import NodeKind
-from ..bindings.shading import Lobe, Material, NodeRef, Principled
+from ..bindings.shading import Lobe, Material, NodeRef, Portal, Principled
 
 _MATERIAL = Material.PARAMETERS
 _LOBE = Lobe.PARAMETERS
+_PORTAL = Portal.PARAMETERS
 _PRINCIPLED = Principled.PARAMETERS
 
 
@@ -48,7 +49,7 @@ def kinds_of_sources(nodes, value):
 def map_parameters(material, change):
     """Return the material with every parameter replaced by change(owner, name, value), or itself if none changes.
 
-    owner: "material", "lobe" or "principled".
+    owner: "material", "lobe", "principled" or "portal".
     """
 
     def mapped(record, owner, names):
@@ -64,6 +65,12 @@ def map_parameters(material, change):
     changes = mapped(material, "material", _MATERIAL)
     if any(new is not old for new, old in zip(lobes, material.lobes, strict=True)):
         changes["lobes"] = tuple(lobes)
+    portals = [
+        dataclasses.replace(portal, **inner) if (inner := mapped(portal, "portal", _PORTAL)) else portal
+        for portal in material.portals
+    ]
+    if any(new is not old for new, old in zip(portals, material.portals, strict=True)):
+        changes["portals"] = tuple(portals)
     return dataclasses.replace(material, **changes) if changes else material
 
 

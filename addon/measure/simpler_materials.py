@@ -171,7 +171,7 @@ def opaque(material):
             return tuple(min(1.0, x / rest) for x in _three(value))
         return _BLACK if (owner, name) == ("material", "transmittance") else value
 
-    return without_idle_nodes(map_parameters(material, change))
+    return without_idle_nodes(map_parameters(material.replaced(portals=()), change))
 
 
 def dark(material):

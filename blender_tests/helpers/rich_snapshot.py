@@ -15,6 +15,7 @@ from addon.bindings.snapshot import (
     Node,
     NodeRef,
     ObjectAttribute,
+    Portal,
     Principled,
     World,
 )
@@ -46,6 +47,8 @@ def rich():
     paint = Material(
         "paint",
         lobes=(Lobe(LobeKind.PRINCIPLED, principled=Principled(base_color=NodeRef(1))),),
+        portals=(Portal(weight=(0.125, 0.25, 0.5), moves=1, position=NodeRef(1)),),
+        transmittance=(0.125, 0.25, 0.5),
         emission=NodeRef(1),
         nodes=(Node(), seen),
     )

@@ -86,6 +86,7 @@ typedef enum lancer_struct {
   LANCER_STRUCT_DENOISED_ERROR,
   LANCER_STRUCT_RANGE,
   LANCER_STRUCT_PART,
+  LANCER_STRUCT_PORTAL,
   LANCER_STRUCT_COUNT
 } lancer_struct;
 /* Returns sizeof the struct with this lancer_struct number, or 0 for an unknown number, so that a caller can refuse a stale
@@ -688,6 +689,16 @@ typedef struct lancer_lobe {
   const lancer_principled *principled; /* PRINCIPLED */
 } lancer_lobe;
 
+/* A part of a surface that light enters to go on elsewhere, as Cycles' Ray Portal. The weight is a part of the material's
+ * transmittance. Shadow rays do not pass a surface with a portal. In CLASSIC light goes straight on. */
+typedef struct lancer_portal {
+  uint32_t moves; /* 1: light goes on at position; 0: where it has met the surface */
+  uint32_t reserved;
+  lancer_parameter weight;    /* [color 0] factor of the light */
+  lancer_parameter position;  /* [vector 0] world */
+  lancer_parameter direction; /* [vector 0] world, of any length; 0, 0, 0: straight on */
+} lancer_portal;
+
 enum lancer_material_flag {
   LANCER_MATERIAL_NO_BUMP_CORRECTION = 1, /* do not soften the terminator of bump-mapped surfaces */
   LANCER_MATERIAL_NOT_A_LIGHT = 2,        /* emits, but is never sampled as a light: only scattered rays find it */
@@ -699,10 +710,13 @@ typedef struct lancer_material {
   const char *name;
   const lancer_lobe *lobes;
   const lancer_node *nodes;
+  const lancer_portal *portals;
   uint32_t lobe_count;            /* at most 64; 0 is a black surface */
   uint32_t node_count;            /* at most LANCER_MOST_NODES */
   uint32_t material_index;        /* value of the material index pass */
   uint32_t flags;                 /* LANCER_MATERIAL_* bits */
+  uint32_t portal_count;          /* at most 64 */
+  uint32_t reserved;
   lancer_parameter emission;      /* [color 0] radiance, both sides; may be negative */
   lancer_parameter transmittance; /* [color 0] factor of light that passes straight through; lobes and emission are not
                                      scaled by it */

@@ -41,7 +41,8 @@ uint32_t lancer_sizeof(uint32_t which) {
       sizeof(lancer_progress),     sizeof(lancer_statistics),     sizeof(lancer_hit),       sizeof(lancer_vertex),
       sizeof(lancer_light_sample), sizeof(lancer_bsdf_sample),    sizeof(lancer_attribute), sizeof(lancer_image),
       sizeof(lancer_node),         sizeof(lancer_principled),     sizeof(lancer_world),     sizeof(lancer_lobe_info),
-      sizeof(lancer_error),        sizeof(lancer_denoised_error), sizeof(lancer_range),     sizeof(lancer_part)};
+      sizeof(lancer_error),        sizeof(lancer_denoised_error), sizeof(lancer_range),     sizeof(lancer_part),
+      sizeof(lancer_portal)};
   return which < LANCER_STRUCT_COUNT ? uint32_t(sizes[which]) : 0;
 }
 

@@ -131,6 +131,9 @@ ReadyLobe planned(Random &random, const Code &code, bool covered) {
   lobe.roughness = Parameter{glm::vec3(from.lobe.roughness)};
   lobe.ior = Parameter{glm::vec3(from.lobe.ior)};
   lobe.edge = Parameter{from.lobe.edge};
+  const glm::vec3 film(covered ? 1.0f + 1000.0f * random.uniform() : 0.0f);
+  lobe.film_thickness = Parameter{film};
+  lobe.film_ior = Parameter{glm::vec3(from.lobe.film_ior)};
   const auto share = [&] { return Parameter{glm::vec3(0.1f + 0.8f * random.uniform())}; };
   auto p = std::make_shared<PrincipledDescription>();
   p->rules = code.rules;
@@ -145,6 +148,8 @@ ReadyLobe planned(Random &random, const Code &code, bool covered) {
   p->ior = Parameter{glm::vec3(1.1f + random.uniform())};
   p->specular = Parameter{glm::vec3(from.layers.specular)};
   p->specular_tint = Parameter{from.layers.specular_tint};
+  p->film_thickness = Parameter{film};
+  p->film_ior = Parameter{glm::vec3(from.layers.film_ior)};
   if (code.kind == LobeKind::Principled)
     lobe.principled = std::move(p);
   return make_ready_lobes(material)[0];

@@ -1,6 +1,6 @@
 """The shaders and displacements of random graphs, as node_kinds has the rest."""
 
-from .node_kinds import NORMAL, TANGENT, C, F, Kind
+from .node_kinds import NORMAL, TANGENT, C, F, Kind, V
 
 # Nanometres; most films are thin enough to be coloured.
 _FILM = {"Thin Film Thickness": ("f", 0.0, 900.0), "Thin Film IOR": ("f", 1.0, 2.0)}
@@ -57,6 +57,10 @@ SHADERS = {
         {"BSDF": "s"},
         {"distribution": ("ASHIKHMIN", "MICROFIBER")},
     ),
+    "ShaderNodeBsdfToon": Kind(
+        {"Color": C, "Size": F, "Smooth": F, "Normal": NORMAL}, {"BSDF": "s"}, {"component": ("DIFFUSE", "GLOSSY")}
+    ),
+    "ShaderNodeBsdfRayPortal": Kind({"Color": C, "Position": V, "Direction": V}, {"BSDF": "s"}, weight=0.5),
     "ShaderNodeBsdfTranslucent": Kind({"Color": C, "Normal": NORMAL}, {"BSDF": "s"}),
     "ShaderNodeBsdfTransparent": Kind({"Color": C}, {"BSDF": "s"}),
     "ShaderNodeEmission": Kind({"Color": C, "Strength": ("f", 0.0, 2.0)}, {"Emission": "s"}, weight=2.0),
@@ -87,4 +91,4 @@ EXACT = {
 }  # fmt: skip
 # Closures that pass on to others, and those that show what is behind.
 MIXED = {"ShaderNodeMixShader", "ShaderNodeAddShader"}
-CLEAR = MIXED | {"ShaderNodeBsdfTransparent", "ShaderNodeHoldout"}
+CLEAR = MIXED | {"ShaderNodeBsdfTransparent", "ShaderNodeHoldout", "ShaderNodeBsdfRayPortal"}

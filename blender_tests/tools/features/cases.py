@@ -28,7 +28,7 @@ from addon.bindings.enums import (
     Ray,
     Shading,
 )
-from addon.bindings.shading import Image, Lobe, Material, Node, NodeRef, Principled, World
+from addon.bindings.shading import Image, Lobe, Material, Node, NodeRef, Portal, Principled, World
 from addon.bindings.snapshot import Camera, Instance, InstanceTable, Light, MeshData
 
 BALL, FLOOR, SQUARE = range(3)
@@ -100,6 +100,7 @@ def _objects(name, **columns):
     return Case(name, on(BALL), on(SQUARE))
 
 
+_WHITE = (1.0, 1.0, 1.0)
 _ASKED = "every lamp is asked at every hit"
 
 
@@ -226,6 +227,9 @@ CASES = (
     _surface("refraction alone", _lobe(LobeKind.REFRACTION, roughness=0.2)),
     _surface("cloth (sheen)", _lobe(LobeKind.SHEEN)),
     _surface("translucency", _lobe(LobeKind.TRANSLUCENT)),
+    _surface("toon", _lobe(LobeKind.TOON, roughness=0.4, roughness_across=0.3)),
+    _surface("rough glass with a thin film", _lobe(LobeKind.GLASS, roughness=0.4, film_thickness=400.0)),
+    _surface("portal", Material(lobes=(), transmittance=_WHITE, portals=(Portal(weight=_WHITE, direction=(0, 1, 1)),))),
     _surface("Principled plastic", _principled()),
     _surface("Principled with clear coat", _principled(coat=1.0)),
     _surface("Principled glass", _principled(transmission=1.0, roughness=0.1)),

@@ -98,7 +98,8 @@ Cutout recognise(const Material &material, const std::vector<Image> &images) {
   cutout.ends_with_alpha = cutout.alpha.known();
   // The surface may vanish where it neither emits nor is a holdout, and where each lobe's weight varies.
   std::vector<Parameter> deciding{material.transmittance};
-  cutout.may_end = !material.emits() && !material.holdout.varies() && material.holdout.value == glm::vec3(0.0f);
+  cutout.may_end =
+      material.portals.empty() && !material.emits() && !material.holdout.varies() && material.holdout.value == glm::vec3(0.0f);
   for (const LobeDescription &lobe : material.lobes) {
     cutout.may_end &= lobe.weight.varies();
     deciding.push_back(lobe.weight);

@@ -145,6 +145,8 @@ void add_material(const Material &material, Features &features) {
   }
   if (material.is_transparent())
     features.bits |= kFeatureTransparency;
+  if (!material.portals.empty())
+    features.bits |= kFeaturePortals;
   if (material.emits())
     features.bits |= kFeatureEmitters;
   if (!material.program.nodes.empty())

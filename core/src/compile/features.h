@@ -31,6 +31,7 @@ enum Feature : uint32_t {
   kFeatureHoldout = 1u << 18,
   kFeatureVisibility = 1u << 19, // some object is hidden from some rays
   kFeatureGlass = 1u << 20,      // some material reflects and refracts
+  kFeaturePortals = 1u << 21,    // some surface sends light on elsewhere
 };
 
 struct Features {

@@ -14,7 +14,7 @@ constexpr uint32_t kRaySingular = 64, kRayReflected = 128;
 template <class F> struct LightPath {
   WordOf<F> kinds = WordOf<F>(0u); // RayKind, kRaySingular, kRayReflected; 0 for a sampled light
   F length = F(0.0f);              // of the ray, in the user's units
-  // Scattering events before the ray: all, and by kind; surfaces passed straight through; portals, of which there are none.
+  // Scattering events before the ray: all, and by kind; surfaces passed straight through, portals included; portals.
   F depth = F(0.0f), diffuse = F(0.0f), glossy = F(0.0f), transmission = F(0.0f), transparent = F(0.0f), portal = F(0.0f);
 };
 
@@ -45,7 +45,7 @@ template <class F> LANCER_LANE F light_path_value(uint32_t which, const LightPat
 // Data of a Light Path node about a path: the kind of its last scattering event, and counts by kind.
 struct PathStory {
   uint8_t kinds = RayKind::Camera; // see LightPath::kinds
-  uint8_t diffuse = 0, glossy = 0, transmission = 0;
+  uint8_t diffuse = 0, glossy = 0, transmission = 0, portals = 0;
 
   // The counts saturate at 255.
   void scatter(bool is_diffuse, bool transmitted, bool singular) {
@@ -54,6 +54,7 @@ struct PathStory {
     kinds = uint8_t((is_diffuse ? RayKind::Diffuse : RayKind::Glossy) |
                     (transmitted ? uint32_t(RayKind::Transmission) : kRayReflected) | (singular ? kRaySingular : 0));
   }
+  void pass_portal() { portals = uint8_t(std::min(portals + 1, 255)); }
   LightPath<float> told(float length, uint32_t scatterings, uint32_t passed_through) const {
     return {.kinds = kinds,
             .length = length,
@@ -61,7 +62,8 @@ struct PathStory {
             .diffuse = float(diffuse),
             .glossy = float(glossy),
             .transmission = float(transmission),
-            .transparent = float(passed_through)};
+            .transparent = float(passed_through),
+            .portal = float(portals)};
   }
 };
 

@@ -187,17 +187,22 @@ void make_schedules(Material &material) {
   const auto schedule = [&](std::vector<Parameter> parameters) { return material.program.schedule(parameters); };
   std::vector<Parameter> surface{material.emission, material.transmittance, material.holdout, material.ambient,
                                  material.normal};
-  std::vector<Parameter> emission{material.emission};
+  std::vector<Parameter> emission{material.emission}, transmittance{material.transmittance};
+  for (const Portal &portal : material.portals) {
+    surface.insert(surface.end(), {portal.weight, portal.position, portal.direction});
+    transmittance.push_back(portal.weight);
+  }
   for (const LobeDescription &lobe : material.lobes) {
     collect(lobe, surface);
     if (!lobe.principled)
       continue;
     const Parameter &below = lobe.principled->emission;
     material.layered_emission |= below.varies() || below.value != glm::vec3(0.0f);
+    material.has_sheets |= may_be_smooth_sheet(*lobe.principled);
     emission.push_back(below);
   }
   material.surface_nodes = schedule(std::move(surface));
-  material.transmittance_nodes = schedule({material.transmittance});
+  material.transmittance_nodes = schedule(std::move(transmittance));
   material.emission_nodes = schedule(std::move(emission));
   material.displacement_nodes = schedule({material.displacement});
 }
@@ -216,6 +221,11 @@ void add_material(Description &description, const lancer_material &source) {
               LANCER_MATERIAL_NO_BUMP_CORRECTION | LANCER_MATERIAL_NOT_A_LIGHT | LANCER_MATERIAL_OPAQUE_SHADOWS |
                   LANCER_MATERIAL_KEEP_NORMALS);
 
+  if (source.portal_count > uint32_t(kMaxLobes))
+    bad_argument(object + ": " + std::to_string(source.portal_count) + " portals > " + std::to_string(kMaxLobes));
+  if (source.portal_count && !source.portals)
+    bad_argument(object + ": portals is NULL for " + std::to_string(source.portal_count) + " portals");
+
   Material material;
   material.name = source.name ? source.name : "";
   material.index = source.material_index;
@@ -231,6 +241,12 @@ void add_material(Description &description, const lancer_material &source) {
   material.ambient = reader.read_color("ambient", source.ambient);
   material.displacement = reader.read_vector("displacement", source.displacement);
   material.normal = reader.read_vector("normal", source.normal);
+  for (uint32_t i = 0; i < source.portal_count; ++i) {
+    const lancer_portal &given = source.portals[i];
+    material.portals.push_back({(given.moves & 1) != 0, reader.read_color("portal weight", given.weight),
+                                reader.read_vector("portal position", given.position),
+                                reader.read_vector("portal direction", given.direction)});
+  }
   make_schedules(material);
   description.messages.add(messages);
   description.materials.push_back(std::move(material));

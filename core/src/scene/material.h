@@ -32,11 +32,22 @@ struct LobeDescription {
   std::shared_ptr<const PrincipledDescription> principled;
 };
 
+// A portal of a lower mean weight is none, as in Cycles.
+inline constexpr float kLeastPortal = 1e-5f;
+
+// A part of a surface that light enters to go on elsewhere. weight: a part of the material's transmittance; position: where
+// the light goes on if moves is set, in the user's world; direction: 0 = straight on.
+struct Portal {
+  bool moves = false;
+  Parameter weight, position, direction;
+};
+
 struct ReadyLobe;
 
 struct Material {
   std::string name;
   std::vector<LobeDescription> lobes;
+  std::vector<Portal> portals;
   Program program;
   Parameter emission, transmittance, holdout, ambient, displacement, normal;
   uint32_t index = 0;

@@ -4,6 +4,7 @@
 #include "simd/vectors.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace lancer {
 
@@ -264,14 +265,77 @@ void PathIntegrator::pass_straight(uint32_t lane) {
   const Hit &hit = surface_.hit(lane);
   const Ray &ray = surface_.ray(lane);
   film_.pass_on(path, hit.t);
-  path.beta *= surface_.transmittance(lane) / surface_.lobes().pass[lane];
+  Scattering from = queue_.from[path_[lane]];
+  from.passed += surface_.distance(lane);
+  Ray next = ray_from(surface_.surface(lane), ray.d, ray.tmax - hit.t);
+  if (has_portal(lane)) {
+    if (const Portal *portal = choose_portal(lane, path))
+      enter_portal(lane, *portal, next);
+    // Shadow rays end at portals, so that no light sample competes with the ray.
+    from = {next.o, glm::vec3(0.0f), true, 0.0, 0.0};
+    path.story.pass_portal();
+  } else {
+    path.beta *= surface_.transmittance(lane) / surface_.lobes().pass[lane];
+  }
   path.length += surface_.distance(lane);
   path.count_crossings(1, settings_.transparent_bounces);
   next_.paths.push_back(path);
-  next_.from.push_back(queue_.from[path_[lane]]);
-  next_.from.back().passed += surface_.distance(lane);
-  next_.rays.push_back(ray_from(surface_.surface(lane), ray.d, ray.tmax - hit.t));
+  next_.from.push_back(from);
+  next_.rays.push_back(next);
   next_.rays.back().kinds = path.kinds;
+}
+
+glm::vec3 PathIntegrator::portal_weight(uint32_t lane, const Portal &portal) const {
+  const glm::vec3 weight = glm::max(surface_.value(portal.weight, lane), 0.0f);
+  return mean(weight) >= kLeastPortal ? weight : glm::vec3(0.0f);
+}
+
+bool PathIntegrator::has_portal(uint32_t lane) const {
+  return std::ranges::any_of(surface_.material(lane).portals,
+                             [&](const Portal &portal) { return portal_weight(lane, portal) != glm::vec3(0.0f); });
+}
+
+// Chooses among the portals of a surface and the way straight on, for which it returns null, and weights the path.
+const Portal *PathIntegrator::choose_portal(uint32_t lane, Path &path) const {
+  const std::vector<Portal> &portals = surface_.material(lane).portals;
+  glm::vec3 straight = surface_.transmittance(lane);
+  for (const Portal &portal : portals)
+    straight -= portal_weight(lane, portal);
+  straight = glm::max(straight, 0.0f);
+  float all = mean(straight);
+  for (const Portal &portal : portals)
+    all += mean(portal_weight(lane, portal));
+  const float pass = surface_.lobes().pass[lane];
+  float left = path.way_number(pass) * all;
+  const Portal *chosen = nullptr;
+  glm::vec3 weight = straight;
+  for (const Portal &portal : portals) {
+    const glm::vec3 its = portal_weight(lane, portal);
+    // Rounding may leave a number beyond the last share: the last way that light takes is chosen then.
+    if (left < mean(weight) || its == glm::vec3(0.0f))
+      continue;
+    left -= mean(weight);
+    chosen = &portal;
+    weight = its;
+  }
+  path.beta *= weight * (all / (mean(weight) * pass));
+  return chosen;
+}
+
+// Sends a ray on from where the portal leads to.
+void PathIntegrator::enter_portal(uint32_t lane, const Portal &portal, Ray &ray) const {
+  constexpr double kPlace2 = 1e-9; // squared distance in the user's units within which Cycles takes places as one
+  const glm::dvec3 d(surface_.value(portal.direction, lane));
+  const glm::dvec3 way = d != glm::dvec3(0.0) ? glm::normalize(d) : surface_.ray(lane).d;
+  const glm::dvec3 p = get(surface_.surfaces().p, lane);
+  const glm::dvec3 to =
+      portal.moves ? scene_.normalisation.to_normalised(glm::dvec3(surface_.value(portal.position, lane))) : p;
+  const glm::dvec3 moved = (to - p) / scene_.normalisation.scale;
+  ray = ray_from(surface_.surface(lane), way, std::numeric_limits<double>::infinity());
+  if (glm::dot(moved, moved) <= kPlace2)
+    return;
+  ray.o = to;
+  ray.skip_instance = ray.skip_primitive = kNone;
 }
 
 // Adds the next ray of a lane; branch: its number in a lane that splits.

@@ -67,6 +67,10 @@ private:
   void go_on();
   void look_around(uint32_t lane);
   void pass_straight(uint32_t lane);
+  glm::vec3 portal_weight(uint32_t lane, const Portal &portal) const;
+  bool has_portal(uint32_t lane) const;
+  const Portal *choose_portal(uint32_t lane, Path &path) const;
+  void enter_portal(uint32_t lane, const Portal &portal, Ray &ray) const;
   void scatter(uint32_t lane, uint32_t branch);
 
   const Path &path_of(uint32_t lane) const { return queue_.paths[path_[lane]]; }

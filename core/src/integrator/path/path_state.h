@@ -59,6 +59,11 @@ struct Path {
     const uint32_t dimension = kDimensionOpacity + 2 * (scatterings * kMaxCrossings + crossings);
     return pass > 0.0f && (pass >= 1.0f || sampler.get1(dimension) < pass);
   }
+  // Returns a number in [0, 1) for the choice among the ways straight on, after chooses_to_pass().
+  float way_number(float pass) const {
+    const uint32_t dimension = kDimensionOpacity + 2 * (scatterings * kMaxCrossings + crossings);
+    return std::min(sampler.get1(dimension) / std::min(pass, 1.0f), 1.0f - 0x1p-24f);
+  }
   // Returns the first dimension of the path's current vertex.
   uint32_t vertex_dimension() const { return kDimensionVertex + scatterings * kVertexStride; }
   // Whether the path belongs to the first sample of its pixel. paths: number of paths after a split.

@@ -28,6 +28,8 @@ glm::vec3 Shader::transmittance(const Ray &ray, const Hit &hit, const LightPath<
   const Material &material = scene_.materials[number];
   if (!material.is_transparent() || (material.flags & MaterialFlag::OpaqueShadows))
     return glm::vec3(0.0f);
+  if (material.has_sheets || !material.portals.empty())
+    return transmittance_by_lobes(ray, hit, material, path);
   // Use the cheapest evaluation that suffices.
   if (!material.transmittance.varies())
     return glm::max(material.transmittance.value, 0.0f);
@@ -46,6 +48,17 @@ glm::vec3 Shader::transmittance(const Ray &ray, const Hit &hit, const LightPath<
                {.wo = glm::vec3(-glm::normalize(ray.d)), .path = path});
   }
   return glm::max(nodes_.value(material.transmittance), 0.0f);
+}
+
+// Returns the transmittance of a surface with sheets or portals. No shadow ray passes a portal.
+glm::vec3 Shader::transmittance_by_lobes(const Ray &ray, const Hit &hit, const Material &material,
+                                         const LightPath<float> &path) {
+  const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hit);
+  shade(surface, {.wo = glm::vec3(-glm::normalize(ray.d)), .path = path}, shaded_, false);
+  for (const Portal &portal : material.portals)
+    if (mean(glm::max(nodes_.value(portal.weight), 0.0f)) >= kLeastPortal)
+      return glm::vec3(0.0f);
+  return shaded_.transmittance;
 }
 
 bool Shader::is_there(uint32_t number, const Hit &hit) {

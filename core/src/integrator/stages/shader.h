@@ -38,6 +38,8 @@ public:
   glm::vec4 node_value(const Surface &surface, uint32_t node, const glm::vec3 &wo);
 
 private:
+  glm::vec3 transmittance_by_lobes(const Ray &ray, const Hit &hit, const Material &material, const LightPath<float> &path);
+
   const Scene &scene_;
   MaterialNodes nodes_;
   Shaded shaded_;
