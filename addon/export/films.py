@@ -4,7 +4,7 @@ from ..bindings.shading import NodeRef
 from .colorspace import luminance_weights
 from .sockets import PRINCIPLED, SMALLEST_IOR
 
-_THINNEST = 0.1  # nanometres; Cycles ignores thinner films
+_THINNEST = 0.10000000149011612  # nanometres, 0.1 in single precision; Cycles ignores films up to this
 _DEFAULT_IOR = 1.33
 # Of Rec. 709, in whose primaries the core computes the colours of films.
 _LUMINANCE = (0.2126, 0.7152, 0.0722)

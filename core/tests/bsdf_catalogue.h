@@ -94,8 +94,9 @@ inline std::vector<Known> facet_lobes(double alpha) {
   metal.edge = {0.9f, 0.8f, 0.4f};
   add("metal by F82 with a film", covered(metal, Rules::Blender50));
   for (const Rules rules : {Rules::Blender45, Rules::Blender50})
+    // From inside, Cycles takes the film as if light had the wavelengths of air.
     add("glass with a film, " + std::to_string(int(rules)),
-        covered(at_alpha(LobeKind::Glass, Facets::Ggx, alpha, above), rules), above);
+        covered(at_alpha(LobeKind::Glass, Facets::Ggx, alpha, above), rules), above, alpha, false);
   for (const float ior : {above, below}) {
     const std::string which = " of " + std::to_string(ior);
     add("glass" + which, at_alpha(LobeKind::Glass, Facets::Ggx, alpha, ior), ior);

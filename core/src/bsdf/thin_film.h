@@ -3,14 +3,16 @@
 #pragma once
 
 #include "bsdf/albedo_tables.h"
-#include "bsdf/thin_film_table.h"
 #include "bsdf/fresnel.h"
+#include "bsdf/thin_film_table.h"
 #include "sampling/warp.h"
 
 namespace lancer {
 
 // A film of at most this thickness, in nanometres, is none, as in Cycles.
 inline constexpr float kThinnestFilm = 0.1f;
+// Indices beyond this, of films and of metals below them, have the same effect, and powers that leave the range of float.
+inline constexpr float kDensest = 1e4f;
 
 template <class F> struct ThinFilm { F thickness, ior; };
 
@@ -147,7 +149,7 @@ template <class F> void add_film(const Lobe<F> &lobe, F cos_i, FacetResponse<F> 
   // The effect of a film fades as its thickness vanishes.
   const bool by_table = lobe.rules >= Rules::Blender50;
   const F rise = clamp01(film.thickness / (by_table ? 1.0f : 30.0f)), shown = rise * rise * (3.0f - 2.0f * rise);
-  const F ior = select(rise < one, one + (film.ior - one) * shown, film.ior);
+  const F given = min(film.ior, F(kDensest)), ior = select(rise < one, one + (given - one) * shown, given);
   const Polarized<F> top = polarized(cos_i, ior);
   const F path = 2.0f * ior * film.thickness * top.cos_t;
   F re[3][kFilmCrossings], im[3][kFilmCrossings];
@@ -195,7 +197,10 @@ template <class F> void add_film(const Lobe<F> &lobe, F cos_i, FacetResponse<F> 
     const V n2 = (n + V(one)) * (n + V(one)), n1 = (n - V(one)) * (n - V(one));
     k = sqrt(max((r * n2 - n1) / (V(one) - r), V(zero)));
   }
-  const F ns[3] = {n.x, n.y, n.z}, ks[3] = {k.x, k.y, k.z}, edges[3] = {edge.x, edge.y, edge.z};
+  const F limit(kDensest);
+  const V densest(limit), bounded_n = min(n, densest), bounded_k = min(k, densest);
+  const F ns[3] = {bounded_n.x, bounded_n.y, bounded_n.z}, ks[3] = {bounded_k.x, bounded_k.y, bounded_k.z},
+          edges[3] = {edge.x, edge.y, edge.z};
   for (int channel = 0; channel < 3; ++channel) {
     const PolarizedMetal<F> bottom = polarized_metal(top.cos_t, ior, ns[channel], ks[channel], edges[channel], f82);
     const auto turned = [](const Phasor<F> &phase, F sign) __attribute__((always_inline))->Phasor<F> {

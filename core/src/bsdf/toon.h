@@ -52,7 +52,7 @@ LANCER_LANE ColorValue<F> toon_eval(const Lobe<F> &lobe, const Vec3<F> &wo, cons
   const F chord2 = dot(apart, apart), angle = 2.0f * atan2(sqrt(chord2), sqrt(dot(along, along)));
   F seen = angle;
   if (lobe.rules == Rules::Blender3)
-    seen = select(drew, lobe.energy * min(0.5f * chord2 / lobe.shininess, F(1.0f)), angle);
+    seen = select(drew, lobe.energy * (1.0f - min(0.5f * chord2 / lobe.shininess, F(1.0f))), angle);
   MaskOf<F> there = (angle < lobe.energy) & (wi.z >= F(0.0f));
   if (lobe.variant == static_cast<uint8_t>(Toon::Glossy))
     there = there & (wo.z > F(0.0f)) & (wi.z > F(0.0f));

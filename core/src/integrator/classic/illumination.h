@@ -130,6 +130,10 @@ template <class F> LANCER_LANE BranchShares<F> branch_shares(const Lobe<F> &lobe
     shares = {lobe.albedo - lobe.through, lobe.through};
     break;
   case LobeShape::Microfacet: {
+    if (passes_through(lobe)) {
+      shares.refracted = lobe.albedo;
+      break;
+    }
     // Rough facets use their mean reflection. Smooth facets and facets that refract are treated as a single smooth boundary, so
     // that no light is lost between the two shares.
     shares.reflected = lobe.albedo;

@@ -50,15 +50,16 @@ glm::vec3 Shader::transmittance(const Ray &ray, const Hit &hit, const LightPath<
   return glm::max(nodes_.value(material.transmittance), 0.0f);
 }
 
-// Returns the transmittance of a surface with sheets or portals. No shadow ray passes a portal.
+// Returns the transmittance of a surface with sheets or portals. As in Cycles, a shadow ray ends at a portal, but beside a
+// transparent part it passes the portals' shares straight, too.
 glm::vec3 Shader::transmittance_by_lobes(const Ray &ray, const Hit &hit, const Material &material,
                                          const LightPath<float> &path) {
   const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hit);
   shade(surface, {.wo = glm::vec3(-glm::normalize(ray.d)), .path = path}, shaded_, false);
+  glm::vec3 straight = shaded_.transmittance;
   for (const Portal &portal : material.portals)
-    if (mean(glm::max(nodes_.value(portal.weight), 0.0f)) >= kLeastPortal)
-      return glm::vec3(0.0f);
-  return shaded_.transmittance;
+    straight -= glm::max(nodes_.value(portal.weight), 0.0f);
+  return material.portals.empty() || mean(straight) >= kLeastPortal ? shaded_.transmittance : glm::vec3(0.0f);
 }
 
 bool Shader::is_there(uint32_t number, const Hit &hit) {
