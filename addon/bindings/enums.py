@@ -306,6 +306,8 @@ class Coordinate(IntEnum):
     BACKFACING = 11
     PARAMETRIC = 12
     FROM_CAMERA = 13
+    EDGE_U = 14
+    EDGE_V = 15
 
 
 class Projection(IntEnum):
@@ -455,6 +457,8 @@ class LobeKind(IntEnum):
     PRINCIPLED = 13
     MINNAERT = 14
     TOON = 15
+    HAIR = 16
+    HAIR_FIBRE = 17
 
 
 class Distribution(IntEnum):

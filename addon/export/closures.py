@@ -8,6 +8,7 @@ from .arithmetic import is_constant
 from .course_models import read_group
 from .distributions import read_distribution
 from .films import read_film
+from .hair import read_hair, read_principled_hair
 from .principled import read_principled
 from .sockets import DIFFUSE_OPTION, SMALLEST_IOR
 
@@ -168,6 +169,8 @@ CLOSURES = {
     "BSDF_DIFFUSE": _diffuse,
     "BSDF_GLASS": _glass,
     "BSDF_GLOSSY": _glossy,
+    "BSDF_HAIR": read_hair,
+    "BSDF_HAIR_PRINCIPLED": read_principled_hair,
     "BSDF_METALLIC": _metallic,
     "BSDF_PRINCIPLED": read_principled,
     "BSDF_RAY_PORTAL": _portal,

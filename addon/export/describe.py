@@ -27,10 +27,16 @@ _NAMES = {
     LobeKind.TRANSLUCENT: "Translucent Kd",
     LobeKind.PRINCIPLED: "Principled",
     LobeKind.MINNAERT: "Minnaert Kd",
+    LobeKind.TOON: "Toon",
+    LobeKind.HAIR: "Hair",
+    LobeKind.HAIR_FIBRE: "Hair absorption",
 }
-_ROUGH = {LobeKind.DIFFUSE, LobeKind.GLOSSY, LobeKind.GLASS, LobeKind.REFRACTION, LobeKind.CONDUCTOR, LobeKind.SHEEN}
+_ROUGH = {
+    LobeKind.DIFFUSE, LobeKind.GLOSSY, LobeKind.GLASS, LobeKind.REFRACTION, LobeKind.CONDUCTOR, LobeKind.SHEEN, LobeKind.HAIR,
+    LobeKind.HAIR_FIBRE,
+}  # fmt: skip
 _FACETS = {LobeKind.BECKMANN, LobeKind.GLOSSY, LobeKind.GLASS, LobeKind.REFRACTION, LobeKind.CONDUCTOR}
-_REFRACTIVE = {LobeKind.BECKMANN, LobeKind.DIELECTRIC, LobeKind.GLASS, LobeKind.REFRACTION}
+_REFRACTIVE = {LobeKind.BECKMANN, LobeKind.DIELECTRIC, LobeKind.GLASS, LobeKind.REFRACTION, LobeKind.HAIR_FIBRE}
 # Inputs of the Principled BSDF that are shown if they are not 0, with their names.
 _PRINCIPLED = (
     ("metallic", "metallic"),
@@ -39,6 +45,8 @@ _PRINCIPLED = (
     ("sheen", "sheen"),
     ("diffuse_roughness", "diffuse roughness"),
     ("anisotropic", "anisotropic"),
+    ("film_thickness", "thin film"),
+    ("thin_wall", "thin wall"),
 )
 
 
@@ -107,6 +115,10 @@ def _lobe(lobe):
         text += f", roughness {_told(lobe.roughness)}"
     if lobe.kind in _REFRACTIVE:
         text += f", IOR {_told(lobe.ior)}"
+    if lobe.kind == LobeKind.TOON:
+        text += f", size {_told(lobe.roughness)}, smooth {_told(lobe.roughness_across)}"
+    if not is_constant(lobe.film_thickness, 0.0):
+        text += f", thin film {_told(lobe.film_thickness)}"
     if not is_constant(lobe.normal, 0.0):
         text += ", normal mapped"
     yield text

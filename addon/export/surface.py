@@ -18,7 +18,10 @@ _MAX_LOBES = 64  # the core's limit
 _NONE = (0.0, 0.0, 0.0)  # a normal or tangent: the surface's own
 # Lobes linear in their colour, into which a constant weight is multiplied. Rough diffuse is not linear: its interreflection
 # between facets depends on powers of the colour.
-_LINEAR = {LobeKind.LAMBERT, LobeKind.TRANSLUCENT, LobeKind.REFRACTION, LobeKind.SHEEN, LobeKind.TOON}
+_LINEAR = {LobeKind.LAMBERT, LobeKind.TRANSLUCENT, LobeKind.REFRACTION, LobeKind.SHEEN, LobeKind.TOON, LobeKind.HAIR}
+
+# Lobes whose colour does not scale them.
+_BRIGHT_IF_BLACK = {LobeKind.CONDUCTOR, LobeKind.HAIR_FIBRE}
 
 
 class Surface:
@@ -144,7 +147,7 @@ class Surface:
     def add(self, kind, weight, color=(1.0, 1.0, 1.0), rules=RULES, **values):
         """Add a lobe; skip black ones and merge it with an equal one, to save time."""
         weight, color = (value if isinstance(value, NodeRef) else triple(value) for value in (weight, color))
-        if is_constant(color, 0.0) and kind != LobeKind.CONDUCTOR or is_constant(weight, 0.0):
+        if is_constant(color, 0.0) and kind not in _BRIGHT_IF_BLACK or is_constant(weight, 0.0):
             return
         if kind in _LINEAR and not isinstance(weight, NodeRef) and not isinstance(color, NodeRef):
             color, weight = self.graph.multiply(color, weight), (1.0, 1.0, 1.0)

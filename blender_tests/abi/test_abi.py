@@ -157,7 +157,7 @@ def test_wrong_nodes(raw):
     none = max(kinds) + 1
     refused_with(raw.node(kind=none), words=["kind", str(none)])
     for kind, options in (
-        (kinds.COORDINATE, 14),
+        (kinds.COORDINATE, 16),
         (kinds.MATH, 41),
         (kinds.VECTOR_MATH, 24),
         (kinds.MIX, 19),

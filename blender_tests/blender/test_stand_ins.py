@@ -6,17 +6,13 @@ from blenders import MODULE, PROGRAM
 
 
 @pytest.mark.parametrize("which", [MODULE, PROGRAM])
-def test_thin_surfaces_are_told(which, tmp_path):
-    got = blenders.run(which, tmp_path, "stand_in_cases", "thin")
-    assert got.pop("") == []
+def test_the_other_model_of_hair_is_told(which, tmp_path):
+    got = blenders.run(which, tmp_path, "stand_in_cases", "hair_models")
     got.pop("console")
-    said = {
-        "Thin Film Thickness": "input 'Thin Film Thickness' is not supported, the surface has no film",
-        "Thin Wall": "input 'Thin Wall' is not supported, the surface bounds a solid",
-    }
-    assert bool(got) == (which == MODULE)
-    for name, messages in got.items():
-        assert len(messages) == 1 and said[name] in messages[0] and messages[0].startswith(f"material '{name}'")
+    assert got.pop("CHIANG") == []
+    assert set(got) == ({"HUANG"} if which == MODULE else set())
+    for messages in got.values():
+        assert len(messages) == 1 and "the model Huang is not supported, Chiang is used" in messages[0]
 
 
 @pytest.mark.parametrize("which", [MODULE, PROGRAM])

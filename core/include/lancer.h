@@ -432,7 +432,9 @@ enum lancer_coordinate {
   LANCER_COORDINATE_PARAMETRIC = 12,    /* barycentric weights of vertices 0 and 1, as in Blender */
   LANCER_COORDINATE_FROM_CAMERA = 13,   /* as CAMERA, but in the height of a bump that of the bump itself, and in the world
                                            that of the direction taken as a point */
-  LANCER_COORDINATE_COUNT = 14
+  LANCER_COORDINATE_EDGE_U = 14,       /* world: from vertex 0 of a triangle to 1, Cycles' dPdu on meshes; else 0, 0, 0 */
+  LANCER_COORDINATE_EDGE_V = 15,       /* from vertex 0 to 2, Cycles' dPdv */
+  LANCER_COORDINATE_COUNT = 16
 };
 enum lancer_projection { LANCER_PROJECT_FLAT = 0, LANCER_PROJECT_BOX = 1, LANCER_PROJECT_SPHERE = 2, LANCER_PROJECT_TUBE = 3 };
 enum lancer_extension { LANCER_EXTEND_REPEAT = 0, LANCER_EXTEND_EXTEND = 1, LANCER_EXTEND_CLIP = 2, LANCER_EXTEND_MIRROR = 3 };
@@ -596,6 +598,10 @@ LANCER_API lancer_status lancer_compute_sky(uint32_t model, double elevation, do
  *   PRINCIPLED   see lancer_principled
  *   TOON         of constant brightness in a cone of the angle pi/2 roughness, which fades over pi/2 roughness_across; its axis
  *                is the normal for option 0, the mirrored direction for option 1
+ *   HAIR         option 0: reflection, 1: transmission of the Hair BSDF along tangent; roughness along it, roughness_across
+ *                around it, offset in radians
+ *   HAIR_FIBRE   Chiang's Principled Hair BSDF along tangent, as on meshes: color is the absorption, roughness and
+ *                roughness_across as in HAIR, edge[0] the roughness of the first reflection over roughness, offset in radians
  * film_thickness, in nanometres, and film_ior describe a film on GLASS and CONDUCTOR whose interference colours the reflected
  * light, in the primaries of Rec. 709; a film of at most 0.1 is none. */
 /* clang-format on */
@@ -616,7 +622,9 @@ enum lancer_lobe_kind {
   LANCER_PRINCIPLED = 13,
   LANCER_MINNAERT = 14,
   LANCER_TOON = 15,
-  LANCER_LOBE_KIND_COUNT = 16
+  LANCER_HAIR = 16,
+  LANCER_HAIR_FIBRE = 17,
+  LANCER_LOBE_KIND_COUNT = 18
 };
 enum lancer_distribution {
   LANCER_DISTRIBUTION_GGX = 0,
@@ -678,19 +686,21 @@ typedef struct lancer_lobe {
   lancer_parameter roughness;          /* [share 0.5] BECKMANN: alpha itself; others: the socket's value */
   lancer_parameter ior;                /* [index 1.5] relative to the outside, > 0, may be infinite */
   lancer_parameter shininess;          /* [amount 50] the exponent n of PHONG, BLINN_PHONG; k of MINNAERT */
-  lancer_parameter edge;               /* [color 1] CONDUCTOR */
+  lancer_parameter edge;               /* [color 1] CONDUCTOR, HAIR_FIBRE */
   lancer_parameter anisotropy;         /* [signed 0] GLOSSY, CONDUCTOR */
   lancer_parameter rotation;           /* [turns 0] GLOSSY, CONDUCTOR */
   lancer_parameter normal;             /* [direction 0] none: the shading normal */
   lancer_parameter tangent;            /* [direction 0] none: any */
-  lancer_parameter roughness_across;   /* [share 0] TOON */
+  lancer_parameter roughness_across;   /* [share 0] TOON, HAIR, HAIR_FIBRE */
+  lancer_parameter offset;             /* [turns 0] HAIR, HAIR_FIBRE */
   lancer_parameter film_thickness;     /* [amount 0] GLASS, CONDUCTOR */
   lancer_parameter film_ior;           /* [index 1.33] GLASS, CONDUCTOR */
   const lancer_principled *principled; /* PRINCIPLED */
 } lancer_lobe;
 
 /* A part of a surface that light enters to go on elsewhere, as Cycles' Ray Portal. The weight is a part of the material's
- * transmittance. Shadow rays do not pass a surface with a portal. In CLASSIC light goes straight on. */
+ * transmittance. As in Cycles, shadow rays end at portals, but pass them straight where the surface has other transmittance,
+ * too. In CLASSIC light goes straight on. */
 typedef struct lancer_portal {
   uint32_t moves; /* 1: light goes on at position; 0: where it has met the surface */
   uint32_t reserved;

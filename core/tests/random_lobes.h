@@ -67,7 +67,8 @@ inline std::vector<Code> all_codes() {
           const bool there = facets == Facets::Ggx || (facets == Facets::Beckmann && (of_facets || cloth)) ||
                              (facets == Facets::AshikhminShirley && kind == LobeKind::Glossy) ||
                              (facets == Facets::MultiGgx && (of_facets || layered));
-          const bool optional = layered || kind == LobeKind::Diffuse || kind == LobeKind::Conductor || kind == LobeKind::Toon;
+          const bool optional = layered || kind == LobeKind::Diffuse || kind == LobeKind::Conductor || kind == LobeKind::Toon ||
+                                kind == LobeKind::Hair;
           if (there && (optional || option == 0))
             all.push_back({kind, rules, facets, option});
         }
@@ -90,6 +91,7 @@ inline Described described(Random &random, const Code &code, const glm::vec3 &ns
   lobe.anisotropy = one_of(random, {0.0f, 1.0f}) * (1.8f * random.uniform() - 0.9f);
   lobe.rotation = one_of(random, {0.0f, 1.0f}) * random.uniform();
   lobe.roughness_across = share(random);
+  lobe.offset = one_of(random, {0.0f, 1.0f}) * (random.uniform() - 0.5f);
   lobe.film_thickness = thickness(random);
   lobe.film_ior = 0.8f + random.uniform();
   if (random.next() % 2)

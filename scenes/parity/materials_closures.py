@@ -359,10 +359,10 @@ def portal_mixed(scene):
     _window(scene, build)
 
 
-@case(needs=with_node(_PORTAL))
+@case(since=(5, 0))
 def portal_depth(scene):
     """Portals count as surfaces passed straight through, and by themselves."""
-    thing = _window(scene, lambda nodes: nodes.add(_PORTAL, Position=_elsewhere(nodes)))
+    _window(scene, lambda nodes: nodes.add(_PORTAL, Position=_elsewhere(nodes)))
 
     def build(nodes):
         path = nodes.add("ShaderNodeLightPath")
@@ -373,9 +373,9 @@ def portal_depth(scene):
         nodes.link(color, shine.inputs["Color"])
         return shine
 
-    parts.place(scene, "Told", parts.cube_mesh("Told", 1.2), material(build), (41.5, 3.0, 2.0))
-    parts.place(scene, "Told here", parts.cube_mesh("Told", 0.5), bpy.data.objects["Told"].active_material, (1.0, -0.8, 0.3))
-    thing.data.materials[0].name = "Portal"
+    told = material(build)
+    parts.place(scene, "Told", parts.cube_mesh("Told", 1.2), told, (41.5, 3.0, 2.0))
+    parts.place(scene, "Told here", parts.cube_mesh("Told here", 0.5), told, (1.0, -0.8, 0.3))
 
 
 @case(needs=with_node(_PORTAL), bounces=4)
@@ -384,3 +384,39 @@ def portal_lights(scene):
     _window(scene, lambda nodes: nodes.add(_PORTAL, Position=_elsewhere(nodes)))
     scene.objects["Lamp"].data.energy = 1.0
     scene.objects["Far light"].data.size = 8.0
+
+
+@variants(
+    values={
+        "reflection": ("Reflection", 0.3, 0.8),
+        "narrow": ("Reflection", 0.1, 0.3),
+        "transmission": ("Transmission", 0.3, 0.6),
+    }
+)
+def hair(scene, value):
+    component, along, around = value
+    inputs = {"Color": (0.7, 0.5, 0.3), "RoughnessU": along, "RoughnessV": around, "Offset": 0.1}
+    studio(scene, shader("ShaderNodeBsdfHair", {"component": component}, **inputs)).visible_diffuse = False
+
+
+@case()
+def hair_along_a_tangent(scene):
+    def build(nodes):
+        around = nodes.add("ShaderNodeTangent", props={"direction_type": "RADIAL", "axis": "Z"})
+        inputs = {"Color": (0.7, 0.5, 0.3), "RoughnessU": 0.3, "RoughnessV": 0.7, "Offset": 0.2, "Tangent": around}
+        return nodes.add("ShaderNodeBsdfHair", **inputs)
+
+    studio(scene, material(build)).visible_diffuse = False
+
+
+_HAIR_COLORS = {
+    "COLOR": {"Color": (0.5, 0.3, 0.15), "Roughness": 0.4, "Radial_Roughness": 0.5},
+    "MELANIN": {"Melanin": 0.6, "Melanin_Redness": 0.4, "Tint": (0.9, 0.8, 1.0), "Random": 0.7},
+    "ABSORPTION": {"Absorption_Coefficient": (0.1, 0.3, 0.8), "Coat": 0.5, "Random_Roughness": 0.4},
+}
+
+
+@variants(values={"color": "COLOR", "melanin": "MELANIN", "absorption": "ABSORPTION"})
+def hair_principled(scene, way):
+    fibre = shader("ShaderNodeBsdfHairPrincipled", {"parametrization": way}, **_HAIR_COLORS[way])
+    studio(scene, fibre).visible_diffuse = False

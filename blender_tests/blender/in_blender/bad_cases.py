@@ -154,7 +154,7 @@ def missing_image():
 
 def unsupported_node():
     stage.room()
-    bpy.data.objects["Cube"].data.materials[0] = stage.shader("ShaderNodeBsdfHair", "Fur")
+    bpy.data.objects["Cube"].data.materials[0] = stage.shader("ShaderNodeEeveeSpecular", "Fur")
     return _outcome()
 
 

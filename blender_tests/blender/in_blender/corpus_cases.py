@@ -78,9 +78,7 @@ def missing():
     stage.light_paths_alike(scene)
     scene.render.use_motion_blur = True
     for number in (1, 2):
-        toon = stage.shader("ShaderNodeBsdfToon", f"Toon {number}")
-        next(node for node in toon.node_tree.nodes if node.type == "BSDF_TOON").component = "GLOSSY"
-        stage.cube(material=toon, location=(2 * number, 0, 0.5))
+        stage.cube(material=stage.shader("ShaderNodeEeveeSpecular", f"Specular {number}"), location=(2 * number, 0, 0.5))
     # A warning does not count as a missing feature.
     scene.objects["Cube"].data.materials[0] = None
     result = {}

@@ -5,23 +5,17 @@ import stage
 from export_cases import export_told
 from material_cases import Tree, answer
 
-# {input: first Blender that has it}
-THIN = {"Thin Film Thickness": (4, 2), "Thin Wall": (5, 2)}
 
-
-def thin():
-    """Return {input: messages} of a Principled node for each of the inputs that this Blender has, and of a plain one."""
+def hair_models():
+    """Return {model: messages} of Principled Hair of each model that this Blender has."""
     result = {}
-    for name, since in {"": (0, 0), **THIN}.items():
-        if bpy.app.version < since:
-            continue
-        tree = Tree(name or "plain")
-        node = tree.node("BsdfPrincipled")
-        if name:
-            socket = node.inputs[name]
-            socket.default_value = True if socket.type == "BOOLEAN" else 300.0
+    for model in ("CHIANG", "HUANG") if bpy.app.version >= (4, 0) else ("CHIANG",):
+        tree = Tree(model)
+        node = tree.node("BsdfHairPrincipled")
+        if hasattr(node, "model"):
+            node.model = model
         tree.show(node.outputs[0])
-        result[name] = answer(tree.material)[tree.material.name]["messages"]
+        result[model] = answer(tree.material)[model]["messages"]
     return result
 
 

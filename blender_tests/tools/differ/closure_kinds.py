@@ -60,6 +60,22 @@ SHADERS = {
     "ShaderNodeBsdfToon": Kind(
         {"Color": C, "Size": F, "Smooth": F, "Normal": NORMAL}, {"BSDF": "s"}, {"component": ("DIFFUSE", "GLOSSY")}
     ),
+    "ShaderNodeBsdfHair": Kind(
+        {"Color": C, "Offset": ("f", -0.5, 0.5), "RoughnessU": F, "RoughnessV": F},
+        {"BSDF": "s"},
+        {"component": ("Reflection", "Transmission")},
+        0.4,
+    ),
+    "ShaderNodeBsdfHairPrincipled": Kind(
+        {
+            "Color": C, "Melanin": F, "Melanin Redness": F, "Tint": C, "Absorption Coefficient": C,
+            "Roughness": ("f", 0.1, 1.0), "Radial Roughness": ("f", 0.1, 1.0), "Coat": F, "IOR": ("f", 1.1, 2.0),
+            "Offset": ("f", -0.2, 0.2), "Random Color": F, "Random Roughness": F, "Random": F,
+        },
+        {"BSDF": "s"},
+        {"parametrization": ("ABSORPTION", "MELANIN", "COLOR"), "model": ("CHIANG",)},
+        0.4,
+    ),
     "ShaderNodeBsdfRayPortal": Kind({"Color": C, "Position": V, "Direction": V}, {"BSDF": "s"}, weight=0.5),
     "ShaderNodeBsdfTranslucent": Kind({"Color": C, "Normal": NORMAL}, {"BSDF": "s"}),
     "ShaderNodeBsdfTransparent": Kind({"Color": C}, {"BSDF": "s"}),

@@ -4,6 +4,7 @@
 #include "bsdf/ashikhmin.h"
 #include "bsdf/bsdf.h"
 #include "bsdf/classic_lobes.h"
+#include "bsdf/hair.h"
 #include "bsdf/matte.h"
 #include "bsdf/microfacet_eval.h"
 #include "bsdf/normals.h"
@@ -30,7 +31,7 @@ template <class F> bool is_of_class(const Lobe<F> &lobe, Component rays) {
 
 template <class F> bool lets_through(const Lobe<F> &lobe) {
   return (is_facets(lobe) && (refracts(lobe) || passes_through(lobe))) || lobe.shape == LobeShape::Dielectric ||
-         matte_transmits(lobe);
+         matte_transmits(lobe) || (is_hair(lobe) && !is_hair(lobe, Hair::Reflection));
 }
 
 // Returns alpha_x alpha_y, or its equivalent.
@@ -51,9 +52,9 @@ template <class F> LANCER_LANE F alpha2_of(const Lobe<F> &lobe) {
 }
 
 // Returns whether a lobe samples a direction on this side of ng: never on the wrong side, except that Cycles 3 does not check
-// refracting lobes.
+// refracting lobes, and none checks hair.
 template <class F> LANCER_LANE MaskOf<F> draws_on_side(const Lobe<F> &lobe, MaskOf<F> through, F cos_ng) {
-  if (lobe.rules == Rules::Blender3 && is_facets(lobe) && refracts(lobe))
+  if (is_hair(lobe) || (lobe.rules == Rules::Blender3 && is_facets(lobe) && refracts(lobe)))
     return uniform<F>(true);
   return !((cos_ng < 0.0f) != through);
 }
@@ -225,9 +226,13 @@ BsdfValue<F> Bsdf<F>::sum(const Local &local, const Drawn &drawn, bool lit, uint
       add(lobe.component, there, toon_eval(lobe, wo_l, wi, drew));
       continue;
     }
+    if (is_hair(lobe)) {
+      add(lobe.component, there, is_hair(lobe, Hair::Chiang) ? chiang_eval(lobe, wo_l, wi) : hair_eval(lobe, wo_l, wi, drew));
+      continue;
+    }
     const B crossing = there & through;
     if (is_facets(lobe) && passes_through(lobe)) {
-      const V mirrored = across(wi);
+      const V mirrored = mirrored_beyond(wi);
       const V facet = select(drew & drawn.has_h, drawn.h, half_vector(wo_l, mirrored));
       add(Component::Transmission, crossing & (wo_l.z > zero), microfacet_eval_reflected(lobe, wo_l, mirrored, facet));
       continue;

@@ -11,6 +11,7 @@ template <class F> struct Bsdf<F>::Direction {
   V wi, h, weight; // in the lobe's frame; weight of single directions over their probability within the lobe
   F probability;   // of single directions, within the lobe
   B valid, single, has_h;
+  B first; // hair: reflected by the fibre's surface
 };
 
 // Samples a direction from one lobe, in the lanes that selected it.
@@ -49,7 +50,7 @@ template <class F> void Bsdf<F>::draw(const Lobe<F> &lobe, B mine, F u_side, F u
     valid = d.valid;
     has_h = !single;
     if (passes_through(lobe))
-      wi = across(wi);
+      wi = mirrored_beyond(wi);
     break;
   }
   case LobeShape::Toon:
@@ -86,9 +87,16 @@ template <class F> void Bsdf<F>::draw(const Lobe<F> &lobe, B mine, F u_side, F u
   case LobeShape::Dielectric:
     take_single(dielectric_sample(lobe, wo_l, u_side));
     break;
+  case LobeShape::Hair:
+    break;
+  }
+  if (is_hair(lobe)) {
+    B first = uniform<F>(is_hair(lobe, Hair::Reflection));
+    wi = is_hair(lobe, Hair::Chiang) ? chiang_sample(lobe, wo_l, u_side, u, v, first) : hair_sample(lobe, wo_l, u, v);
+    direction.first = select(mine, first, direction.first);
   }
   const bool wide = lobe.shape == LobeShape::Lambert || lobe.shape == LobeShape::Matte || lobe.shape == LobeShape::Sheen ||
-                    lobe.shape == LobeShape::Toon;
+                    lobe.shape == LobeShape::Toon || is_hair(lobe);
   if (!wide) {
     // A lobe seen from behind reflects nothing; a direction sampled below the horizon is lost.
     valid = valid & (wo_l.z > zero);
@@ -137,8 +145,8 @@ template <class F> BsdfSample<F> Bsdf<F>::sample(F u_lobe, F u, F v) const {
       seen = select(mine, wo_local[lobe.frame], seen);
     }
   }
-  Direction direction{V(zero), V(zero),           V(zero),           V(zero),          V(zero),
-                      zero,    uniform<F>(false), uniform<F>(false), uniform<F>(false)};
+  Direction direction{V(zero), V(zero),           V(zero),           V(zero),           V(zero),
+                      zero,    uniform<F>(false), uniform<F>(false), uniform<F>(false), uniform<F>(false)};
   if (any(cosines))
     direction.cosine = warp_cosine_hemisphere(u, v);
   if (any(visible))
@@ -167,7 +175,10 @@ template <class F> BsdfSample<F> Bsdf<F>::sample(F u_lobe, F u, F v) const {
   }
   Local local;
   turn_to_frames(result.wi, frame, direction.wi, direction.single, local);
-  const B through = direction.wi.z < zero;
+  B through = direction.wi.z < zero;
+  for (int i = 0; i < count; ++i)
+    if (is_hair(lobes[i]))
+      through = select(equal(chosen, numbered(i)), !direction.first, through);
   result.transmitted = through;
   result.delta = direction.single;
   B valid = direction.valid & (direction.wi.z != zero);

@@ -200,6 +200,31 @@ template <class F> LANCER_LANE void add_toon(Bsdf<F> &bsdf, const LobeInputs<F> 
   bsdf.add(lobe);
 }
 
+// Hair has the surface's own normal, and an offset for a tangent that is given.
+template <class F> LANCER_LANE void add_hair(Bsdf<F> &bsdf, const LobeInputs<F> &inputs) {
+  using V = Vec3<F>;
+  const uint8_t frame = add_frame(bsdf, reflecting_normal(bsdf, V(F(0.0f))));
+  const V tangent = unit_or(inputs.tangent, bsdf.frames[frame].t);
+  Lobe<F> lobe = make_hair(colored_weight(inputs), inputs.roughness, inputs.roughness_across, -inputs.offset,
+                           bsdf.frames[frame].to_local(tangent), inputs.option == 0 ? Hair::Reflection : Hair::Transmission);
+  lobe.frame = frame;
+  lobe.rules = inputs.rules;
+  bsdf.add(lobe);
+}
+
+template <class F> LANCER_LANE void add_hair_fibre(Bsdf<F> &bsdf, const LobeInputs<F> &inputs) {
+  using V = Vec3<F>;
+  const V tangent = unit_or(inputs.tangent, bsdf.frames[0].t);
+  // A tangent along wo has no plane with it.
+  const uint8_t frame = add_frame(bsdf, unit_or(cross(tangent, bsdf.wo), bsdf.frames[0].b), tangent);
+  Lobe<F> lobe = make_chiang(inputs.weight, inputs.roughness, inputs.roughness_across, inputs.edge.x, inputs.ior, inputs.offset,
+                             max(inputs.color, V(F(0.0f))), bsdf.frames[frame].to_local(bsdf.ng));
+  lobe.frame = frame;
+  lobe.rules = inputs.rules;
+  lobe.albedo = chiang_albedo(lobe, bsdf.wo_local[frame]);
+  bsdf.add(lobe);
+}
+
 // Adds the lobes of CLASSIC other than Lambert.
 template <class F> LANCER_LANE void add_classic(Bsdf<F> &bsdf, const LobeInputs<F> &inputs) {
   const uint8_t frame = add_frame(bsdf, reflecting_normal(bsdf, inputs.normal));
@@ -240,6 +265,10 @@ template <class F> void add_lobe(Bsdf<F> &bsdf, const LobeInputs<F> &inputs) {
     return add_conductor(bsdf, inputs);
   case LobeKind::Toon:
     return add_toon(bsdf, inputs);
+  case LobeKind::Hair:
+    return add_hair(bsdf, inputs);
+  case LobeKind::HairFibre:
+    return add_hair_fibre(bsdf, inputs);
   case LobeKind::Principled:
     return;
   default:

@@ -117,8 +117,10 @@ template <class F> struct LaneLobes : LaneRecords<F, ReadyLobe> {
     in.edge = vector(LANCER_OF(inputs.edge));
     in.anisotropy = number(LANCER_OF(inputs.anisotropy));
     in.rotation = number(LANCER_OF(inputs.rotation));
-    if (of[0]->parts.across)
+    if (of[0]->parts.across) {
       in.roughness_across = number(LANCER_OF(inputs.roughness_across));
+      in.offset = number(LANCER_OF(inputs.offset));
+    }
     if (of[0]->parts.film) {
       in.film_thickness = number(LANCER_OF(inputs.film_thickness));
       in.film_ior = number(LANCER_OF(inputs.film_ior));

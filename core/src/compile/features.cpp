@@ -85,6 +85,9 @@ uint32_t shapes_of(LobeKind kind) {
     return shape_bit(LobeShape::Matte);
   case LobeKind::Toon:
     return shape_bit(LobeShape::Toon);
+  case LobeKind::Hair:
+  case LobeKind::HairFibre:
+    return shape_bit(LobeShape::Hair);
   case LobeKind::Principled:
     return shape_bit(LobeShape::Lambert) | shape_bit(LobeShape::Matte) | shape_bit(LobeShape::Microfacet) |
            shape_bit(LobeShape::Ashikhmin) | shape_bit(LobeShape::Sheen);
@@ -196,7 +199,7 @@ Features find_features(const Description &description) {
 
 std::string feature_names(const Features &features) {
   static const char *const shapes[] = {"lambert", "beckmann",   "mirror",    "dielectric", "phong", "blinn-phong",
-                                       "matte",   "microfacet", "ashikhmin", "sheen",      "toon"};
+                                       "matte",   "microfacet", "ashikhmin", "sheen",      "toon",  "hair"};
   static const char *const bits[] = {"transparency", "triangles", "instances",    "spheres",         "planes",
                                      "cylinders",    "cones",     "point-lights", "spot-lights",     "sun-lights",
                                      "area-lights",  "emitters",  "environment",  "environment-map", "vertex-colors",

@@ -83,6 +83,9 @@ size_t add_lobe(const LobeDescription &lobe, Frames &frames) {
     else
       frames.reflecting(lobe.normal);
     return 1;
+  case LobeKind::HairFibre:
+    frames.stretched(lobe.normal, lobe.tangent, lobe.rotation);
+    return 1;
   case LobeKind::Glass:
     frames.reflecting(lobe.normal);
     return old && lobe.distribution != Facets::MultiGgx ? 2 : 1;
@@ -182,7 +185,7 @@ LobeParts::LobeParts(const LobeInputs<float> &inputs, const PrincipledInputs<flo
   const bool is_principled = inputs.kind == LobeKind::Principled;
   normal = inputs.normal != none;
   tangent = inputs.tangent != none && (!is_principled || in.anisotropic > 0.0f);
-  across = inputs.roughness_across != 0.0f;
+  across = inputs.roughness_across != 0.0f || inputs.offset != 0.0f;
   film = (is_principled ? in.film_thickness : inputs.film_thickness) > kThinnestFilm;
   if (!is_principled)
     return;

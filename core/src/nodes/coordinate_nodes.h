@@ -172,6 +172,14 @@ template <class F> Value<F> coordinate_node(const Node &node, const Site<F> &sit
     return solid(site.wo);
   case Coordinate::Backfacing:
     return scalar(select(site.backfacing, F(1.0f), zero));
+  case Coordinate::EdgeU:
+  case Coordinate::EdgeV: {
+    if (!site.surface || !any(site.on_mesh))
+      return solid(Vector3<F>(zero));
+    const Edges<F> edges = edges_of(site);
+    const Vector3<F> edge = narrow(vector_to_world(site, node.option == Coordinate::EdgeU ? edges.first : edges.second));
+    return solid(select(site.on_mesh, edge, Vector3<F>(zero)));
+  }
   case Coordinate::Parametric:
     return solid(Vector3<F>(site.surface ? narrow(D(1.0) - site.bary[0] - site.bary[1]) : zero, narrow(site.bary[0]), zero));
   default:

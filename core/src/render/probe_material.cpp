@@ -94,6 +94,8 @@ uint32_t kind_of(const Lobe<float> &lobe) {
     return LANCER_SHEEN;
   case LobeShape::Toon:
     return LANCER_TOON;
+  case LobeShape::Hair:
+    return is_hair(lobe, Hair::Chiang) ? LANCER_HAIR_FIBRE : LANCER_HAIR;
   }
   return LANCER_LAMBERT;
 }

@@ -63,7 +63,7 @@ struct SkyModel { enum : uint32_t {
 }; };
 struct Coordinate { enum : uint32_t {
   Generated = 0, Normal = 1, Uv = 2, Object = 3, Camera = 4, Window = 5, Reflection = 6, Position = 7, ShadingNormal = 8,
-  TrueNormal = 9, Incoming = 10, Backfacing = 11, Parametric = 12, FromCamera = 13
+  TrueNormal = 9, Incoming = 10, Backfacing = 11, Parametric = 12, FromCamera = 13, EdgeU = 14, EdgeV = 15
 }; };
 struct ImageProjection { enum : uint32_t {
   Flat = 0, Box = 1, Sphere = 2, Tube = 3

@@ -109,7 +109,7 @@ LobeDescription read_lobe(const MaterialReader &reader, const lancer_lobe &given
              glass = lobe.kind == LobeKind::Glass || lobe.kind == LobeKind::Refraction,
              metal = lobe.kind == LobeKind::Glossy || lobe.kind == LobeKind::Conductor;
   const bool cloth = lobe.kind == LobeKind::Sheen || lobe.kind == LobeKind::Diffuse;
-  if (metal || lobe.kind == LobeKind::Principled)
+  if (metal || is_hair(lobe) || lobe.kind == LobeKind::Principled)
     lobe.tangent = reader.read_vector("tangent", given.tangent);
   if (lobe.kind == LobeKind::Principled) {
     lobe.principled = read_principled(reader, *given.principled);
@@ -130,6 +130,15 @@ LobeDescription read_lobe(const MaterialReader &reader, const lancer_lobe &given
   if (lobe.kind == LobeKind::Toon) {
     lobe.roughness = reader.read_share("size", given.roughness, 0.5f);
     lobe.roughness_across = reader.read_share("smooth", given.roughness_across);
+  }
+  if (is_hair(lobe)) {
+    lobe.roughness = reader.read_share("roughness", given.roughness, 0.2f);
+    lobe.roughness_across = reader.read_share("roughness across", given.roughness_across, 0.2f);
+    lobe.offset = reader.read_scalar("offset", given.offset, -kBrightest, kBrightest, 0.0f);
+  }
+  if (lobe.kind == LobeKind::HairFibre) {
+    lobe.ior = reader.read_ior("IOR", given.ior);
+    lobe.edge = reader.read_color("edge", given.edge, 1.0f);
   }
   if (lobe.kind == LobeKind::Glass || lobe.kind == LobeKind::Conductor) {
     lobe.film_thickness = reader.read_scalar("film thickness", given.film_thickness, 0.0f, kBrightest, 0.0f);
@@ -164,9 +173,9 @@ void check_lobe(const std::string &object, const lancer_lobe &lobe, uint32_t i) 
 
 // Collects all parameters of a lobe.
 void collect(const LobeDescription &lobe, std::vector<Parameter> &parameters) {
-  parameters.insert(parameters.end(),
-                    {lobe.weight, lobe.color, lobe.roughness, lobe.ior, lobe.shininess, lobe.edge, lobe.anisotropy,
-                     lobe.rotation, lobe.normal, lobe.tangent, lobe.roughness_across, lobe.film_thickness, lobe.film_ior});
+  parameters.insert(parameters.end(), {lobe.weight, lobe.color, lobe.roughness, lobe.ior, lobe.shininess, lobe.edge,
+                                       lobe.anisotropy, lobe.rotation, lobe.normal, lobe.tangent, lobe.roughness_across,
+                                       lobe.film_thickness, lobe.film_ior, lobe.offset});
   if (!lobe.principled)
     return;
   const PrincipledDescription &p = *lobe.principled;

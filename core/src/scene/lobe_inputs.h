@@ -26,9 +26,11 @@ enum class LobeKind : uint32_t {
   Translucent = 12,
   Principled = 13,
   Minnaert = 14,
-  Toon = 15
+  Toon = 15,
+  Hair = 16,
+  HairFibre = 17
 };
-inline constexpr uint32_t kLobeKinds = 16;
+inline constexpr uint32_t kLobeKinds = 18;
 // Maximum number of lobes of a material, and of a hit after Principled has become its lobes.
 inline constexpr int kMaxLobes = 64;
 
@@ -59,7 +61,7 @@ template <class F> struct LobeInputs {
   F roughness{0.0f}, ior{1.5f}, shininess{0.0f};
   V edge{F(1.0f)};
   F anisotropy{0.0f}, rotation{0.0f};
-  F roughness_across{0.0f};
+  F roughness_across{0.0f}, offset{0.0f};
   F film_thickness{0.0f}, film_ior{1.33f};
   V normal{F(0.0f)}, tangent{F(0.0f)}; // world; 0 = the shading normal, any tangent
 };

@@ -28,7 +28,7 @@ struct LobeDescription {
   Facets distribution = Facets::Ggx;
   uint32_t option = 0;
   Parameter weight{glm::vec3(1.0f)}, color, roughness, ior{glm::vec3(1.5f)}, shininess, edge{glm::vec3(1.0f)}, anisotropy,
-      rotation, normal, tangent, roughness_across, film_thickness, film_ior{glm::vec3(1.33f)};
+      rotation, normal, tangent, roughness_across, offset, film_thickness, film_ior{glm::vec3(1.33f)};
   std::shared_ptr<const PrincipledDescription> principled;
 };
 
@@ -72,6 +72,7 @@ struct Material {
 // For a scalar parameter.
 inline bool may_be_positive(const Parameter &parameter) { return parameter.varies() || parameter.value.x > 0.0f; }
 
+inline bool is_hair(const LobeDescription &lobe) { return lobe.kind == LobeKind::Hair || lobe.kind == LobeKind::HairFibre; }
 // Whether a lobe beside Principled may have a film.
 inline bool has_film(const LobeDescription &lobe) {
   return (lobe.kind == LobeKind::Glass || lobe.kind == LobeKind::Conductor) && may_be_positive(lobe.film_thickness);
@@ -157,12 +158,14 @@ LANCER_LANE LobeInputs<F> evaluate(const LobeDescription &lobe, const ParameterR
   inputs.roughness = read.share(lobe.roughness);
   inputs.ior = read.ior(lobe.ior, lobe.kind < LobeKind::Diffuse ? 0.0f : kSmallestIor);
   inputs.shininess = read.scalar(lobe.shininess, 0.0f, 1e8f);
-  if (lobe.kind == LobeKind::Conductor)
+  if (lobe.kind == LobeKind::Conductor || lobe.kind == LobeKind::HairFibre)
     inputs.edge = read.color(lobe.edge, f82 ? 1.0f : kBrightest);
   inputs.anisotropy = read.scalar(lobe.anisotropy, -0.99f, 0.99f);
   inputs.rotation = read.turns(lobe.rotation);
-  if (lobe.kind == LobeKind::Toon)
+  if (lobe.kind == LobeKind::Toon || is_hair(lobe))
     inputs.roughness_across = read.share(lobe.roughness_across);
+  if (is_hair(lobe))
+    inputs.offset = read.turns(lobe.offset);
   if (has_film(lobe)) {
     inputs.film_thickness = read.scalar(lobe.film_thickness, 0.0f, kBrightest);
     inputs.film_ior = read.ior(lobe.film_ior, kSmallestIor);

@@ -71,6 +71,7 @@ LobeInputs<F> lobe_of(const Described *of) {
   LANCER_PUT(anisotropy);
   LANCER_PUT(rotation);
   LANCER_PUT(roughness_across);
+  LANCER_PUT(offset);
   LANCER_PUT(film_thickness);
   LANCER_PUT(film_ior);
   LANCER_PUT(normal);
