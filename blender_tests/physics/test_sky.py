@@ -65,7 +65,7 @@ def test_sun_is_sampled(library, diameter, scale):
     world = sunny(diameter, mapped(scale=scale), light=strength)
     with Scene.upload(scene(world, (even_table(),)), library) as uploaded:
         axis, share = middle_of(uploaded)
-        # BSDF samples find an even sky as well: the sun gets the largest share that there is. Its cone is 4e-6 wider than the disc.
+        # BSDF samples find an even sky as well: the sun gets the largest share. Its cone is 4e-6 wider than it.
         if diameter < 0.5:
             assert share == pytest.approx(SHARE * (1 + 8e-6 / diameter) ** -2, abs=0.01)
         samples = uploaded.light(0, [(0, 0, 0)], uniforms(count, 2, 8))
