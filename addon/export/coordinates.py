@@ -9,6 +9,7 @@ from ..bindings.shading import NodeRef
 from ..host.by_scene import identity
 from .arithmetic import THIRDS, divide
 from .attributes import ISLANDS, POINTINESS, RENDER_COLOR, attribute_name, tangents_name
+from .instancer_places import place_name
 from .maths import transformed
 from .object_attributes import LAMPS_ARE_OBJECTS, PREFIXES
 from .properties import view_layer_value
@@ -104,7 +105,7 @@ def _texture_coordinate(graph, site, output):
     if which is None:
         return None
     if node.from_instancer and which in (Coordinate.GENERATED, Coordinate.UV):
-        graph.tell(site, "coordinates from the instancer are not supported, the object's own are used")
+        return _on_instancer(graph, which)
     if which == Coordinate.NORMAL:
         if isinstance(graph.normal, NodeRef):
             return graph.emit(NodeKind.DISPLACEMENT, 1.0, 0.0, 1.0, graph.normal)
@@ -127,8 +128,17 @@ def _texture_coordinate(graph, site, output):
 
 def _uv_map(graph, site, output):
     if site.node.from_instancer:
-        graph.tell(site, "coordinates from the instancer are not supported, the object's own are used")
+        return _on_instancer(graph, Coordinate.UV)
     return coordinate(graph, Coordinate.UV, site.node.uv_map)
+
+
+def _on_instancer(graph, which):
+    name = place_name(which)
+    if graph.is_of_world:
+        return 0.0, 0.0, 0.0
+    if graph.is_of_lamp:
+        return (0.0, 0.0, 0.0) if graph.lamp_value is None else tuple(graph.lamp_value(name)[:3])
+    return graph.emit(NodeKind.OBJECT_INFO, option=ObjectFact.ATTRIBUTE, name=name)
 
 
 def named_value(graph, name, flags=0):

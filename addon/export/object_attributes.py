@@ -8,6 +8,7 @@ import numpy as np
 from ..bindings.snapshot import ObjectAttribute
 from .apart import info_of
 from .instance_layers import HAS_INSTANCES, InstanceLayers, Unreadable, makes_instances, steps
+from .instancer_places import INSTANCER_PLACE, place_value
 from .particles import PARTICLE, particle_value
 from .properties import object_value, property_value
 
@@ -95,6 +96,8 @@ class AttributeReader:
 
     def value(self, entry, name, layers):
         """Return four finite numbers; zeros if nothing has that name."""
+        if name.startswith(INSTANCER_PLACE):
+            return self._finite(entry, name, place_value(entry, name))
         if name.startswith(PARTICLE):
             scene = self._depsgraph.scene
             return self._finite(entry, name, particle_value(entry, name, scene.frame_current + scene.frame_subframe))

@@ -432,8 +432,8 @@ enum lancer_coordinate {
   LANCER_COORDINATE_PARAMETRIC = 12,    /* barycentric weights of vertices 0 and 1, as in Blender */
   LANCER_COORDINATE_FROM_CAMERA = 13,   /* as CAMERA, but in the height of a bump that of the bump itself, and in the world
                                            that of the direction taken as a point */
-  LANCER_COORDINATE_EDGE_U = 14,       /* world: from vertex 0 of a triangle to 1, Cycles' dPdu on meshes; else 0, 0, 0 */
-  LANCER_COORDINATE_EDGE_V = 15,       /* from vertex 0 to 2, Cycles' dPdv */
+  LANCER_COORDINATE_EDGE_U = 14,        /* world: from vertex 0 of a triangle to 1, Cycles' dPdu on meshes; else 0, 0, 0 */
+  LANCER_COORDINATE_EDGE_V = 15,        /* from vertex 0 to 2, Cycles' dPdv */
   LANCER_COORDINATE_COUNT = 16
 };
 enum lancer_projection { LANCER_PROJECT_FLAT = 0, LANCER_PROJECT_BOX = 1, LANCER_PROJECT_SPHERE = 2, LANCER_PROJECT_TUBE = 3 };
@@ -721,11 +721,11 @@ typedef struct lancer_material {
   const lancer_lobe *lobes;
   const lancer_node *nodes;
   const lancer_portal *portals;
-  uint32_t lobe_count;            /* at most 64; 0 is a black surface */
-  uint32_t node_count;            /* at most LANCER_MOST_NODES */
-  uint32_t material_index;        /* value of the material index pass */
-  uint32_t flags;                 /* LANCER_MATERIAL_* bits */
-  uint32_t portal_count;          /* at most 64 */
+  uint32_t lobe_count;     /* at most 64; 0 is a black surface */
+  uint32_t node_count;     /* at most LANCER_MOST_NODES */
+  uint32_t material_index; /* value of the material index pass */
+  uint32_t flags;          /* LANCER_MATERIAL_* bits */
+  uint32_t portal_count;   /* at most 64 */
   uint32_t reserved;
   lancer_parameter emission;      /* [color 0] radiance, both sides; may be negative */
   lancer_parameter transmittance; /* [color 0] factor of light that passes straight through; lobes and emission are not

@@ -132,8 +132,7 @@ TEST(Hair, AClearFibreReturnsAllLight) {
       for (const glm::vec3 &share : parts.share)
         sum += share.x;
       EXPECT_NEAR(sum, 1.0f, 1e-6f) << sine << " " << across;
-      EXPECT_NEAR(over_sphere([&](const glm::vec3 &wi) { return double{chiang_eval(lobe, beside(sine), wi).f.x}; }), 1.0,
-                  0.01);
+      EXPECT_NEAR(over_sphere([&](const glm::vec3 &wi) { return double{chiang_eval(lobe, beside(sine), wi).f.x}; }), 1.0, 0.01);
     }
 }
 

@@ -39,7 +39,8 @@ inline constexpr uint32_t kFreeImages = 40, kTiles = kFreeImages, kSides = kTile
                           kAngles = kTables + 3, kSkies = kAngles + 1;
 
 // A world of five instances (two meshes, three exact surfaces) and images of all forms: kFreeImages of any form, then 3 tiles,
-// then the 6 sides of a cube, then tables of curves of 1, 3 and 4 channels, the light of a luminaire, and two tables of the sky.
+// then the 6 sides of a cube, then tables of curves of 1, 3 and 4 channels, the light of a luminaire, and two tables of the
+// sky.
 class NodeWorld {
 public:
   Description description;

@@ -68,6 +68,9 @@ def vector_transform(scene, setting):
     _blocks(scene, _shining(build))
 
 
+_PLACES = ("Generated", "UV", "UV Map")
+
+
 @variants(values={"world": (0.06, False), "pixels": (2.5, True)}, quick=True)
 def wireframe(scene, setting):
     size, in_pixels = setting
@@ -123,6 +126,41 @@ def particle_info(scene, output):
     settings.lifetime_random, settings.size_random, settings.particle_size = 0.5, 0.6, 0.5
     settings.render_type, settings.instance_object = "OBJECT", block
     settings.physics_type = "NO"
+    sky(scene, (0.2, 0.2, 0.2), 1.0)
+    camera(scene, (0.3, -5.0, 4.0), (0, -0.2, 0.0))
+
+
+def _from_instancer(nodes, output):
+    if output == "UV Map":
+        return nodes.add("ShaderNodeUVMap", props={"from_instancer": True}).outputs["UV"]
+    return nodes.add("ShaderNodeTexCoord", props={"from_instancer": True}).outputs[output]
+
+
+@variants(
+    values={f"{where}_{name.lower().replace(' ', '_')}": (where, name) for where in ("faces", "hairs") for name in _PLACES},
+    bounces=0,
+    quick=True,
+)
+def from_instancer(scene, value):
+    """Coordinates of the faces and the particles of a grid that show a block, and of the block itself."""
+    where, output = value
+    shown = _shining(lambda nodes: _half(nodes, _from_instancer(nodes, output), 0.5))
+    block = parts.place(scene, "Shown", parts.cube_mesh("Shown", 0.3), shown, (0, -2.0, 0.4))
+    mesh = parts.plane_mesh("Ground", 3.0)
+    ground = parts.place(scene, "Ground", mesh, material(lambda nodes: nodes.add("ShaderNodeEmission")))
+    if where == "faces":
+        mesh.clear_geometry()
+        corners = [(x, y, 0.0) for y in (-1.5, -0.2, 1.5) for x in (-1.5, -0.5, 0.5, 1.5)]
+        mesh.from_pydata(corners, [], [(i, i + 1, i + 5, i + 4) for i in (0, 1, 2, 4, 5, 6)])
+        layer = mesh.uv_layers.new(name="Map")
+        for number, corner in enumerate(layer.data):
+            corner.uv = 0.07 * (number % 11), 0.05 * (number % 17)
+        ground.instance_type = "FACES"
+        block.parent = ground
+    else:
+        settings = ground.modifiers.new("Particles", "PARTICLE_SYSTEM").particle_system.settings
+        settings.type, settings.count, settings.hair_length = "HAIR", 12, 1.0
+        settings.render_type, settings.instance_object, settings.particle_size = "OBJECT", block, 0.5
     sky(scene, (0.2, 0.2, 0.2), 1.0)
     camera(scene, (0.3, -5.0, 4.0), (0, -0.2, 0.0))
 

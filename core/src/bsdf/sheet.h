@@ -50,8 +50,8 @@ void add_glass_sheet(Bsdf<F> &bsdf, const Lobe<F> &front, const Vec3<F> &weight,
   const V none(F(0.0f));
   const SheetShares<F> shares = sheet_shares(front, cos_o, clamp01(max(in.base_color, none)));
   const MaskOf<F> preserving = uniform<F>(true);
-  Lobe<F> reflection = make_microfacet(Scatter::Reflect, front.frame, weight * shares.reflected, front.alpha_x, front.alpha_x,
-                                       in.rules);
+  Lobe<F> reflection =
+      make_microfacet(Scatter::Reflect, front.frame, weight * shares.reflected, front.alpha_x, front.alpha_x, in.rules);
   set_constant(reflection, max(in.specular_tint, none));
   complete_microfacet(reflection, cos_o, preserving);
   bsdf.add(reflection);
@@ -73,8 +73,8 @@ void add_matt_sheet(Bsdf<F> &bsdf, uint8_t frame, const Vec3<F> &weight, const V
                     F cos_o) {
   const F forward = clamp01(in.wall_forward);
   for (const bool beyond : {false, true}) {
-    Lobe<F> side = make_diffuse(weight * (beyond ? forward : 1.0f - forward), color, clamp01(in.diffuse_roughness),
-                                in.option == 1, cos_o);
+    Lobe<F> side =
+        make_diffuse(weight * (beyond ? forward : 1.0f - forward), color, clamp01(in.diffuse_roughness), in.option == 1, cos_o);
     if (beyond) {
       const bool rough = side.shape == LobeShape::Matte;
       side.shape = LobeShape::Matte;
