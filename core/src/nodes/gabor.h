@@ -9,12 +9,12 @@
 namespace lancer {
 
 // The sum of waves: amplitude times cosine and sine of the phase.
-template <class F> struct Phasor { F cosine, sine; };
+template <class F> struct WaveSum { F cosine, sine; };
 
 // Adds one impulse: a plane wave under a Gaussian, windowed to 0 at distance 1. way: from the impulse's centre; cycles: of the
 // wave between centre and place.
 template <int N, class F>
-LANCER_LANE void add_impulse(const F (&way)[N], const F &cycles, const MaskOf<F> &is_near, const F &sign, Phasor<F> &sum) {
+LANCER_LANE void add_impulse(const F (&way)[N], const F &cycles, const MaskOf<F> &is_near, const F &sign, WaveSum<F> &sum) {
   constexpr float pi = 3.14159265358979323846f;
   const F half(0.5f);
   F square = way[0] * way[0];
@@ -77,9 +77,9 @@ template <class F> LANCER_LANE void impulse_centre(const F (&cell)[3], int numbe
 }
 
 // Returns the sum of the impulses in a cell and its neighbours.
-template <int N, class F> static Phasor<F> gabor_noise(const F (&place)[N], const GaborWaves<F> &of) {
+template <int N, class F> static WaveSum<F> gabor_noise(const F (&place)[N], const GaborWaves<F> &of) {
   constexpr int kImpulses = 8, kCells = N == 2 ? 9 : 27;
-  Phasor<F> sum{F(0.0f), F(0.0f)};
+  WaveSum<F> sum{F(0.0f), F(0.0f)};
   F whole[N], local[N];
   for (int i = 0; i < N; ++i) {
     whole[i] = floor(place[i]);
@@ -120,7 +120,7 @@ static Vector3<F> gabor_texture(bool in_space, const Vector3<F> &vector, const V
   const F zero(0.0f), one(1.0f), half(0.5f);
   const Vector3<F> p = vector * shape.x;
   GaborWaves<F> of{max(F(0.001f), shape.y), one - min(one, max(zero, shape.z)), orientation.x, zero};
-  Phasor<F> sum;
+  WaveSum<F> sum;
   if (in_space) {
     const F across = sqrt(orientation.x * orientation.x + orientation.y * orientation.y);
     of.first_angle = atan2(across, orientation.z);
