@@ -174,11 +174,13 @@ template <class F> LANCER_LANE Fibre<F> fibre(const Lobe<F> &lobe, const Vec3<F>
   const V kept = t * f, rest = V(one) - kept;
   const auto quotient = [](F a, F b) __attribute__((always_inline)) { return select(b != F(0.0f), a / b, F(0.0f)); };
   r.share[3] = r.share[2] * V(quotient(kept.x, rest.x), quotient(kept.y, rest.y), quotient(kept.z, rest.z));
+  // Samples are shared by luminance, on which the weights against light samples depend.
+  const V luminance(0.2126f, 0.7152f, 0.0722f);
   F all(0.0f);
   for (const V &share : r.share)
-    all += mean(share);
+    all += dot(share, luminance);
   for (int p = 0; p < kHairParts; ++p)
-    r.chance[p] = quotient(mean(r.share[p]), all);
+    r.chance[p] = quotient(dot(r.share[p], luminance), all);
   // The scales tilt the parts by -2, 1 and 4 times their angle.
   const F sin1 = sin(lobe.shininess), cos1 = cosine_of(sin1), sin2 = 2.0f * sin1 * cos1, cos2 = cos1 * cos1 - sin1 * sin1,
           sin4 = 2.0f * sin2 * cos2, cos4 = cos2 * cos2 - sin2 * sin2;
