@@ -110,7 +110,7 @@ def test_wrong_materials(raw):
     def refused_with(lobe, *words):
         refused(add(raw, scene, "material", raw.material(lobes=[lobe])), "material 'Paint'", *words)
 
-    refused_with(raw.lobe(kind=15), "kind", "15")
+    refused_with(raw.lobe(kind=18), "kind", "18")
     refused(add(raw, scene, "material", raw.material(lobes=[raw.lobe()] * 65)), "material 'Paint'", "65")
     refused_with(raw.lobe(kind=abi.LobeKind.PRINCIPLED), "rincipled")
     for kind in (abi.LobeKind.GLOSSY, abi.LobeKind.GLASS, abi.LobeKind.SHEEN):

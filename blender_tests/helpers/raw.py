@@ -66,7 +66,17 @@ class Raw:
     def lobe(self, kind=abi.LobeKind.LAMBERT, principled=None, **fields):
         p = self.parameter
         values = {"weight": 1.0, "color": 0.5, "roughness": 0.1, "ior": 1.5, "shininess": 10.0, "edge": 1.0}
-        values |= {"anisotropy": 0.0, "rotation": 0.0, "normal": 0.0, "tangent": 0.0, **fields}
+        values |= {
+            "anisotropy": 0.0,
+            "rotation": 0.0,
+            "normal": 0.0,
+            "tangent": 0.0,
+            "roughness_across": 0.0,
+            "offset": 0.0,
+            "film_thickness": 0.0,
+            "film_ior": 1.33,
+            **fields,
+        }
         lobe = abi.Lobe(kind=kind, **{name: p(value) for name, value in values.items()})
         if principled is not None:
             lobe.principled = ctypes.pointer(self.keep(principled))
