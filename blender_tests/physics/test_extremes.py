@@ -142,9 +142,10 @@ def test_small_roughness_is_nearly_none(library, lobe):
 
 
 def test_black_is_black(library):
-    """Black lobes reflect nothing, except conductor and Principled, which by definition reflect at grazing angles."""
+    """Black lobes reflect nothing, except conductor and Principled, which by definition reflect at grazing angles, and fibres,
+    whose colour is their absorption."""
     lights = [lamp(emission=1e30), lamp(LightKind.SUN, emission=1e30, matrix=rotate_x(0.5))]
-    kinds = [kind for kind in LobeKind if kind not in (LobeKind.CONDUCTOR, LobeKind.PRINCIPLED)]
+    kinds = [kind for kind in LobeKind if kind not in (LobeKind.CONDUCTOR, LobeKind.PRINCIPLED, LobeKind.HAIR_FIBRE)]
     black = [Material("black", lobes=(Lobe(kind, color=(0, 0, 0)),)) for kind in kinds]
     for material in black:
         snapshot = tiny_scenes.scene([tiny_scenes.plane()], [material], lights, camera=tiny_scenes.pencil((3, 4, 5)))

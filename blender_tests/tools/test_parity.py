@@ -220,10 +220,12 @@ _KINDS = ("point", "spot", "sun", "area")
 _SINCE_45 = {"temperature_warm", "attribute_of_instance"} | {
     f"light_{name}_{kind}" for name in ("exposure", "normalize_off", "temperature") for kind in _KINDS
 }
-_SINCE_52 = {"constants_and_joined_bundles"}
+_SINCE_52 = {"constants_and_joined_bundles", "principled_wall_glass_smooth"}
 _SINCE_50 = _SINCE_52 | {"repeat_zones", "closure_zones", "bundles", "menus_and_groups"}
 _TOO_NEW = {
-    "3.4": _SINCE_50 | _SINCE_45 | {"light_true_sphere_point", "light_true_sphere_spot", "pass_denoising_last_surface"},
+    "3.4": _SINCE_50
+    | _SINCE_45
+    | {"light_true_sphere_point", "light_true_sphere_spot", "pass_denoising_last_surface", "principled_film_thin"},
     "4.2": _SINCE_50 | _SINCE_45,
     "4.5": _SINCE_50,
     "5.0": _SINCE_52,
@@ -239,8 +241,8 @@ _RULES = (
 _SHARES = {
     "lights": "lights_*",
     "materials": "materials_*,textures_*",
-    "nodes": "inputs,inputs_objects,inputs_instances,zones,left_out,settings_of_nodes",
-    "others": "objects,cameras,passes_*,worlds,films",
+    "nodes": "inputs,inputs_objects,inputs_instances,inputs_places,zones,left_out,settings_of_nodes",
+    "others": "objects,cameras,passes_*,worlds,skies,films",
 }
 
 

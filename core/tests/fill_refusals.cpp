@@ -111,10 +111,11 @@ TEST(MaterialRoom, MoreNormalsThanABsdfHoldsAreSaid) {
 lancer_principled all_layers(uint32_t rules) {
   lancer_principled p;
   std::memset(&p, 0, sizeof p);
-  for (lancer_parameter *parameter = &p.base_color; parameter <= &p.emission; ++parameter)
-    *parameter = constant(0.5f);
+#define LANCER_HALF(kind, name, spoken, given) p.name = constant(0.5f);
+  LANCER_PRINCIPLED_PARAMETERS(LANCER_HALF)
+#undef LANCER_HALF
   p.rules = rules;
-  p.coat_normal = constant(0.0f);
+  p.coat_normal = p.thin_wall = constant(0.0f);
   p.coat_ior = p.ior = constant(1.5f);
   return p;
 }

@@ -14,11 +14,12 @@ lancer_principled plain_principled() {
   p.rules = LANCER_RULES_BLENDER_45;
   for (lancer_parameter *input :
        {&p.metallic, &p.diffuse_roughness, &p.specular, &p.anisotropic, &p.anisotropic_rotation, &p.transmission,
-        &p.transmission_roughness, &p.coat, &p.coat_roughness, &p.coat_normal, &p.sheen, &p.emission})
+        &p.transmission_roughness, &p.coat, &p.coat_roughness, &p.coat_normal, &p.sheen, &p.emission, &p.film_thickness,
+        &p.thin_wall, &p.wall_scattering, &p.wall_forward})
     *input = constant(0.0f);
   p.base_color = p.sheen_tint = p.coat_tint = p.specular_tint = constant(0.8f);
   p.roughness = p.sheen_roughness = constant(0.5f);
-  p.ior = p.coat_ior = constant(1.5f);
+  p.ior = p.coat_ior = p.film_ior = constant(1.5f);
   return p;
 }
 

@@ -68,7 +68,7 @@ std::string refusal(const lancer_node &bad) {
 
 TEST(NodesProgram, RefusalsNameMaterialNodeAndValue) {
   EXPECT_EQ(refusal(add(result_of(0))), "");
-  EXPECT_EQ(refusal(node(LANCER_NODE_COUNT)), "material 'Wood': node 1: kind 30 is unknown");
+  EXPECT_EQ(refusal(node(LANCER_NODE_COUNT)), "material 'Wood': node 1: kind " + std::to_string(LANCER_NODE_COUNT) + " is unknown");
   EXPECT_EQ(refusal(node(LANCER_NODE_MATH, LANCER_MATH_COUNT)), "material 'Wood': node 1: option 41 >= 41 options");
   EXPECT_EQ(refusal(add(result_of(1))), "material 'Wood': node 1: input 0 refers to node 1, which does not precede it");
   EXPECT_EQ(refusal(add(result_of(-2))), "material 'Wood': node 1: input 0 refers to node -2, which does not precede it");
@@ -113,7 +113,8 @@ lancer_lobe diffuse() {
   lobe.weight = constant(1.0f);
   lobe.color = constant(0.5f);
   lobe.roughness = lobe.ior = lobe.shininess = lobe.edge = lobe.anisotropy = lobe.rotation = lobe.normal = lobe.tangent =
-      constant(0.0f);
+      lobe.roughness_across = lobe.offset = lobe.film_thickness = constant(0.0f);
+  lobe.film_ior = constant(1.33f);
   return lobe;
 }
 

@@ -51,7 +51,7 @@ lancer_lobe random_lobe(Dice &dice, const RandomNodes *by, lancer_principled &re
   const auto number = [&] { return by && dice() % 3 == 0 ? by->number : parameter(dice() % 3 ? dice.share() : 0.0f); };
   const auto color = [&] { return by && dice() % 2 ? by->color : dice.color(); };
   const uint32_t rules = dice() % 3;
-  lancer_lobe one = lobe(dice() % 2 ? uint32_t(LANCER_PRINCIPLED) : dice() % LANCER_LOBE_KIND_COUNT, 0.75f);
+  lancer_lobe one = lobe(dice() % 2 ? uint32_t(LANCER_PRINCIPLED) : dice() % LANCER_TOON, 0.75f);
   one.rules = rules;
   one.normal = by ? by->normal : parameter(0.0f);
   if (one.kind != LANCER_PRINCIPLED) {
@@ -81,6 +81,8 @@ lancer_lobe random_lobe(Dice &dice, const RandomNodes *by, lancer_principled &re
   record.coat_tint = dice() % 2 ? parameter(1.0f) : dice.color();
   record.specular_tint = record.sheen_tint = dice.color();
   record.coat_normal = record.emission = parameter(0.0f);
+  record.film_thickness = record.thin_wall = record.wall_scattering = record.wall_forward = parameter(0.0f);
+  record.film_ior = parameter(1.33f);
   one.principled = &record;
   return one;
 }

@@ -51,7 +51,7 @@ TEST(SamePictures, LobesOfAllKinds) {
   const uint32_t distributions[] = {LANCER_DISTRIBUTION_GGX, LANCER_DISTRIBUTION_BECKMANN,
                                     LANCER_DISTRIBUTION_ASHIKHMIN_SHIRLEY, LANCER_DISTRIBUTION_MULTI_GGX};
   uint32_t number = 0;
-  for (uint32_t kind = 0; kind < LANCER_LOBE_KIND_COUNT; ++kind)
+  for (uint32_t kind = 0; kind < LANCER_TOON; ++kind)
     for (const uint32_t distribution : distributions) {
       if (kind == LANCER_PRINCIPLED)
         continue;
@@ -100,7 +100,9 @@ TEST(SamePictures, Principled) {
     record.specular_tint = record.sheen_tint = parameter(dice.share());
     if (i % 4 == 1) // supported by kernels of many lanes
       record.sheen = record.anisotropic = record.diffuse_roughness = parameter(0.0f);
-    record.coat_normal = record.emission = parameter(0.0f);
+    record.coat_normal = record.emission = record.film_thickness = parameter(0.0f);
+    record.thin_wall = record.wall_scattering = record.wall_forward = parameter(0.0f);
+    record.film_ior = parameter(1.33f);
     lancer_lobe one = lobe(LANCER_PRINCIPLED, 1.0f);
     one.rules = record.rules;
     one.principled = &record;

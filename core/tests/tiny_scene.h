@@ -26,6 +26,8 @@ inline lancer_lobe lobe(uint32_t kind, float color, float roughness = 0.3f) {
   lobe.ior = parameter(1.5f);
   lobe.shininess = parameter(20.0f);
   lobe.anisotropy = lobe.rotation = lobe.normal = lobe.tangent = parameter(0.0f);
+  lobe.roughness_across = lobe.offset = lobe.film_thickness = parameter(0.0f);
+  lobe.film_ior = parameter(1.33f);
   return lobe;
 }
 

@@ -315,7 +315,7 @@ def _elsewhere(nodes, by=(40.0, 0.0, 0.0)):
 _PORTAL = "ShaderNodeBsdfRayPortal"
 
 
-@case(needs=with_node(_PORTAL), quick=True)
+@case(needs=with_node(_PORTAL))
 def portal_moves(scene):
     _window(scene, lambda nodes: nodes.add(_PORTAL, Color=(0.9, 0.8, 1.0), Position=_elsewhere(nodes)))
 

@@ -56,13 +56,6 @@ def export():
     levels = [_export(thing, messages).emission for thing in (colored, plain)]
     result["nodes"] = [a / b for a, b in zip(*levels, strict=True)]
     result["messages"] = messages.lines()
-    textured = stage.light("POINT")
-    tree, emission = _nodes(textured)
-    coordinate = tree.nodes.new("ShaderNodeTexCoord")
-    tree.links.new(coordinate.outputs["Normal"], emission.inputs["Color"])
-    lost = Messages()
-    _export(textured, lost)
-    result["textured"] = lost.lines()
     return result
 
 
