@@ -8,6 +8,7 @@ import bpy
 import numpy as np
 
 from ..bindings.snapshot import InstanceTable
+from ..host.by_scene import identity
 from ..messages.severity import Severity
 from .apart import read_infos
 from .flat import report_flat
@@ -221,9 +222,9 @@ class Instances:
         def read(messages, images):
             return export_lamp_nodes(thing, messages, images, self.depsgraph, value)
 
-        # Instances of one lamp may differ in what their nodes read of the object.
-        place = tuple(entry.persistent_id) if entry.is_instance else ()
-        return self._parts.shader((thing, thing.data), self.messages, read, place)
+        # Objects and instances of one lamp may differ in what their nodes read of them.
+        place = identity(thing), tuple(entry.persistent_id) if entry.is_instance else ()
+        return self._parts.shader((thing.data,), self.messages, read, place)
 
     def _check_hair(self, thing):
         key = thing.original.as_pointer()

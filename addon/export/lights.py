@@ -9,6 +9,7 @@ import numpy as np
 from ..bindings import snapshot
 from ..bindings.enums import AreaShape, Falloff, LightKind, Ray
 from ..bindings.shading import NodeRef
+from ..host.by_scene import identity
 from ..messages.severity import Severity
 from .graph import NodeGraph
 from .images import NoPictures
@@ -28,6 +29,7 @@ class LampNodes(NamedTuple):
     objects: frozenset = frozenset()  # as those of a material
     reads_layer: bool = False
     reads_time: bool = False
+    owners: frozenset = frozenset()  # more data that it depends on
 
 
 def export_lamp_nodes(thing, messages, images, depsgraph=None, value=None):
@@ -36,11 +38,18 @@ def export_lamp_nodes(thing, messages, images, depsgraph=None, value=None):
     if light.node_tree is None or (bpy.app.version < (5, 2) and not light.use_nodes):
         return LampNodes()
     graph = NodeGraph(f"light '{thing.name}'", messages, images, depsgraph, unknown="white")
-    graph.is_of_lamp, graph.lamp_value = True, value
+    asked = []
+
+    def fact(name):
+        asked.append(name)
+        return value(name)
+
+    graph.is_of_lamp, graph.lamp_value = True, None if value is None else fact
     emission = emission_of(graph, graph.tree_of(light), "OUTPUT_LIGHT")
     # Nodes of which no output is left cost nothing.
     nodes = graph.nodes if isinstance(emission, NodeRef) else ()
-    return LampNodes(emission, nodes, frozenset(graph.objects), graph.reads_layer, graph.reads_time)
+    owners = frozenset({identity(thing)} if asked else ())
+    return LampNodes(emission, nodes, frozenset(graph.objects), graph.reads_layer, graph.reads_time, owners)
 
 
 def export_light(thing, matrix_world, messages, depsgraph=None, hidden=None, shine=None):

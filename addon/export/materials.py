@@ -34,6 +34,7 @@ class _Exported(NamedTuple):
     objects: frozenset = frozenset()  # identities of the objects whose transform it reads
     reads_layer: bool = False  # see NodeGraph
     reads_time: bool = False
+    owners: frozenset = frozenset()  # more data that it depends on
 
 
 class Materials:

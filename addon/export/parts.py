@@ -143,7 +143,7 @@ class Parts:
             self.count("images", len(self.images.list) - known)
             with_time = asked.with_time or exported.reads_time
             pictures, numbers = frozenset(asked.pictures), frozenset(asked.numbers_used)
-            found = _Shader(frozenset(owners), exported, told, pictures, numbers, with_time)
+            found = _Shader(exported.owners.union(owners), exported, told, pictures, numbers, with_time)
         self._used_shaders[key] = found
         messages.merge(found.messages)
         return found.exported

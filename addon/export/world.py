@@ -24,6 +24,7 @@ class Sky(NamedTuple):
     objects: frozenset = frozenset()  # identities of the objects whose transform its nodes read
     reads_layer: bool = False  # see NodeGraph
     reads_time: bool = False
+    owners: frozenset = frozenset()  # more data that it depends on
 
 
 def export_world(world, images, depsgraph, messages):

@@ -4,9 +4,9 @@ import blenders
 import pytest
 from blenders import MODULE, PROGRAM
 
-# Numbers of objects, meshes, shaders (materials and world) and images read after each edit. The scene has seven objects, six
-# meshes, five materials, a world and two images.
-ALL = (7, 6, 6, 2)
+# Numbers of objects, meshes, shaders (materials, lamp and world) and images read after each edit. The scene has seven objects,
+# six meshes, five materials, a lamp, a world and two images.
+ALL = (7, 6, 7, 2)
 MOVED, WALKED = (0, 0, 0, 0), (7, 0, 0, 0)
 MESH, SHADER, SHADER_AND_PICTURE = (7, 1, 0, 0), (7, 0, 1, 0), (7, 0, 1, 1)
 EXPECTED = {
@@ -23,7 +23,7 @@ EXPECTED = {
     # Two objects share the mesh.
     "edited mesh": MESH,
     "edited world": SHADER,
-    "edited lamp": WALKED,
+    "edited lamp": SHADER,
     "animated frame": MESH,
     # Two frames, and the shape key of one object in each.
     "still frame": (14, 2, 0, 0),

@@ -78,7 +78,7 @@ def missing():
     stage.light_paths_alike(scene)
     scene.render.use_motion_blur = True
     for number in (1, 2):
-        stage.cube(material=stage.shader("ShaderNodeEeveeSpecular", f"Specular {number}"), location=(2 * number, 0, 0.5))
+        stage.cube(material=stage.shader("ShaderNodeSubsurfaceScattering", f"Wax {number}"), location=(2 * number, 0, 0.5))
     # A warning does not count as a missing feature.
     scene.objects["Cube"].data.materials[0] = None
     result = {}

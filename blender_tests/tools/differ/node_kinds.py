@@ -45,7 +45,7 @@ _DIMENSIONS = ("1D", "2D", "3D", "4D")
 # Settings of the Sky Texture, without the disc of the sun. Blender 5.0 has renamed dust.
 SKIES = {
     "sky_type": ("NISHITA", "SINGLE_SCATTERING", "MULTIPLE_SCATTERING", "PREETHAM", "HOSEK_WILKIE"),
-    "sun_direction": ((0.0, 0.0, 1.0), (0.6, -0.5, 0.6), (-0.3, 0.9, 0.15)),
+    "sun_direction": ([0.0, 0.0, 1.0], [0.6, -0.5, 0.6], [-0.3, 0.9, 0.15]),
     "turbidity": (1.0, 2.2, 5.7, 10.0),
     "ground_albedo": (0.0, 0.3, 1.0),
     "sun_elevation": (-0.05, 0.05, 0.3, 1.0, 1.5707964),

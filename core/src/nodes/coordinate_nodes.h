@@ -178,7 +178,8 @@ template <class F> Value<F> coordinate_node(const Node &node, const Site<F> &sit
       return solid(Vector3<F>(zero));
     const Edges<F> edges = edges_of(site);
     const Vector3<D> edge = vector_to_world(site, node.option == Coordinate::EdgeU ? edges.first : edges.second);
-    return solid(select(site.on_mesh, narrow(edge / D(site.user_scale())), Vector3<F>(zero)));
+    const Vector3<F> outwards = narrow(edge / D(site.user_scale()));
+    return solid(select(site.on_mesh, select(site.backfacing, -outwards, outwards), Vector3<F>(zero)));
   }
   case Coordinate::Parametric:
     return solid(Vector3<F>(site.surface ? narrow(D(1.0) - site.bary[0] - site.bary[1]) : zero, narrow(site.bary[0]), zero));
