@@ -68,7 +68,8 @@ std::string refusal(const lancer_node &bad) {
 
 TEST(NodesProgram, RefusalsNameMaterialNodeAndValue) {
   EXPECT_EQ(refusal(add(result_of(0))), "");
-  EXPECT_EQ(refusal(node(LANCER_NODE_COUNT)), "material 'Wood': node 1: kind " + std::to_string(LANCER_NODE_COUNT) + " is unknown");
+  EXPECT_EQ(refusal(node(LANCER_NODE_COUNT)),
+            "material 'Wood': node 1: kind " + std::to_string(LANCER_NODE_COUNT) + " is unknown");
   EXPECT_EQ(refusal(node(LANCER_NODE_MATH, LANCER_MATH_COUNT)), "material 'Wood': node 1: option 41 >= 41 options");
   EXPECT_EQ(refusal(add(result_of(1))), "material 'Wood': node 1: input 0 refers to node 1, which does not precede it");
   EXPECT_EQ(refusal(add(result_of(-2))), "material 'Wood': node 1: input 0 refers to node -2, which does not precede it");
