@@ -6,7 +6,7 @@ from .sockets import PRINCIPLED, SMALLEST_IOR
 
 _THINNEST = 0.10000000149011612  # nanometres, 0.1 in single precision; Cycles ignores films up to this
 _DEFAULT_IOR = 1.33
-# Of Rec. 709, in whose primaries the core computes the colours of films.
+# The luminance of Rec. 709: the core computes the colours of films in its primaries.
 _LUMINANCE = (0.2126, 0.7152, 0.0722)
 _NEAR = 1e-3
 

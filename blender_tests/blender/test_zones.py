@@ -38,6 +38,6 @@ def test_only_trees_with_zones_are_resolved(case):
 
 def test_random_trees_with_zones_never_fail(tmp_path):
     """Zones whose ends, items and links make no sense, too."""
-    got = blenders.run(MODULE, tmp_path, "material_cases", "fuzz", 60, True)
+    got = blenders.run(MODULE, tmp_path, "material_fuzz_cases", "fuzz", 60, True)
     assert got["kinds"] > 90 and got["lobes"] > 2 and got["nodes"] > 10
     assert got["backward"] == got["wild"] == 0

@@ -242,7 +242,7 @@ _RULES = (
 _SHARES = {
     "lights": "lights_*",
     "materials": "materials_*,textures_*",
-    "nodes": "inputs,inputs_objects,inputs_instances,inputs_places,zones,left_out,settings_of_nodes",
+    "nodes": "inputs,inputs_objects,inputs_instances,inputs_places,zones,zones_bundles,left_out,settings_of_nodes",
     "others": "objects,cameras,passes_*,worlds,skies,films",
 }
 

@@ -36,7 +36,7 @@ inline float index(Random &random) {
                            : one_of(random, {1.0f, 1.5f, 1.00001f, 0.7f, std::numeric_limits<float>::infinity()});
 }
 
-// Of a film, in nanometres.
+// The thickness of a film, in nanometres.
 inline float thickness(Random &random) {
   return random.next() % 2 ? one_of(random, {0.0f, 0.05f, 0.5f, 20.0f, 1e9f}) : 2000.0f * random.uniform();
 }

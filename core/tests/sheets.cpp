@@ -93,7 +93,7 @@ TEST(Sheets, SmoothGlassLetsRaysPassStraight) {
   EXPECT_EQ(bsdf.straight, through);
 }
 
-// Both sides of dense matter share its light by wall_forward, and lose none.
+// Dense matter sends its light to both sides by wall_forward, and loses none.
 TEST(Sheets, DenseMatterSharesItsLight) {
   for (const float roughness : {0.0f, 0.8f}) {
     PrincipledInputs<float> in = sheet(0.5f);

@@ -12,6 +12,8 @@ from .figures import KINDS, Kind, Limit
 SUBJECTS = (
     "materials_principled",
     "materials_closures",
+    "materials_portals",
+    "materials_hair",
     "materials_mixes",
     "furnaces",
     "furnaces_principled",
@@ -23,6 +25,7 @@ SUBJECTS = (
     "inputs_instances",
     "inputs_places",
     "zones",
+    "zones_bundles",
     "left_out",
     "settings_of_nodes",
     "textures_normals",

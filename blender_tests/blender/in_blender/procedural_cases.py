@@ -76,7 +76,7 @@ class Board:
         self.tree.links.new(output, emission.inputs["Color"])
         self.tree.links.new(emission.outputs[0], end.inputs["Surface"])
 
-    def _rendered(self):
+    def rendered(self):
         """Return the rendered values, (squares, side^2, 3)."""
         picture = stage.picture(self.scene)[:, :, :3]
         rows = picture.shape[0] // self.side
@@ -92,12 +92,12 @@ class Board:
         scene.cycles.samples, scene.cycles.pixel_filter_type, scene.cycles.use_denoising = 1, "BOX", False
         scene.cycles.use_adaptive_sampling = False
         scene.cycles.sample_clamp_direct = scene.cycles.sample_clamp_indirect = 0.0
-        theirs = self._rendered().astype(float) - LIFT
+        theirs = self.rendered().astype(float) - LIFT
         self.tree = self._material("coordinates")
         place = self.tree.nodes.new("ShaderNodeTexCoord")
         self._show(place.outputs["UV"])
         scene.view_layers[0].material_override = bpy.data.materials["coordinates"]
-        places = self._rendered()[:, :, :2]
+        places = self.rendered()[:, :, :2]
         scene.view_layers[0].material_override = None
         ours = self._ours(places)
         result = {}
@@ -119,7 +119,7 @@ class Board:
                 yield scene.node(numbers[name], emission.node, uv)[:, :3].astype(float) - LIFT
 
 
-def _choices(node, field):
+def choices(node, field):
     """Return the values of an enumerated property in this Blender, or [] if there is no such property."""
     field = node.bl_rna.properties.get(field)
     return [] if field is None else [item.identifier for item in field.enum_items]
@@ -130,7 +130,7 @@ def _find(sockets, name):
     return next((socket for socket in sockets if socket.enabled and socket.identifier == name), None)
 
 
-class _Setting:
+class Setting:
     """A node with properties, and numbers for its inputs; inputs that this Blender lacks are ignored."""
 
     def __init__(self, kind, properties, numbers, output, color=False):
@@ -162,14 +162,14 @@ class _Setting:
         return _find(node.outputs, self.output)
 
 
-def _rendered(settings, side):
+def rendered(settings, side):
     board = Board(int(side))
     for number, setting in enumerate(settings):
         board.square(f"{number:03} {setting.name()}"[:63], setting)
     return board.answer()
 
 
-def _probe(kind):
+def probe(kind):
     tree = bpy.data.node_groups.new("asked", "ShaderNodeTree")
     return tree.nodes.new(kind)
 
@@ -178,7 +178,7 @@ def noise(side):
     # Coordinates of the second and third channel are above 200, where they are rounded by 2^-17. The octaves multiply the
     # rounding by up to 2.5^4 = 39 here, which moves noise of a slope about 2 by 6e-4.
     rng, settings = random.Random(1), []
-    kinds = _choices(_probe("ShaderNodeTexNoise"), "noise_type") or ["FBM"]
+    kinds = choices(probe("ShaderNodeTexNoise"), "noise_type") or ["FBM"]
     for dimensions, kind, output in itertools.product(("1D", "2D", "3D", "4D"), kinds, ("Fac", "Color")):
         for plain in (True, False):
             numbers = {
@@ -191,17 +191,17 @@ def noise(side):
                 "Gain": rng.uniform(0.5, 3.0),
             }
             properties = {"noise_dimensions": dimensions, "noise_type": kind, "normalize": plain}
-            settings.append(_Setting("ShaderNodeTexNoise", properties, numbers, output))
+            settings.append(Setting("ShaderNodeTexNoise", properties, numbers, output))
     # Far from the origin, where floats have few digits left, and beyond the noise's period: up to where a multiple of the
     # period is no longer exact in single precision; some versions of Cycles round it.
     for scale in (3e4, 1e5, 2e6):
-        settings.append(_Setting("ShaderNodeTexNoise", {"noise_dimensions": "3D"}, {"Scale": scale, "Detail": 0.0}, "Fac"))
-    return _rendered(settings, side)
+        settings.append(Setting("ShaderNodeTexNoise", {"noise_dimensions": "3D"}, {"Scale": scale, "Detail": 0.0}, "Fac"))
+    return rendered(settings, side)
 
 
 def musgrave(side):
     rng, settings = random.Random(2), []
-    kinds = _choices(_probe("ShaderNodeTexMusgrave"), "musgrave_type")
+    kinds = choices(probe("ShaderNodeTexMusgrave"), "musgrave_type")
     for dimensions, kind, detail in itertools.product(("1D", "2D", "3D", "4D"), kinds, (0.0, 0.6, 2.0, 4.3)):
         numbers = {
             "Scale": rng.uniform(2, 9),
@@ -212,15 +212,15 @@ def musgrave(side):
             "Gain": rng.uniform(0.5, 3.0),
         }
         properties = {"musgrave_dimensions": dimensions, "musgrave_type": kind}
-        settings.append(_Setting("ShaderNodeTexMusgrave", properties, numbers, "Fac"))
-    return _rendered(settings, side)
+        settings.append(Setting("ShaderNodeTexMusgrave", properties, numbers, "Fac"))
+    return rendered(settings, side)
 
 
 def voronoi(side):
     rng, settings = random.Random(3), []
-    probe = _probe("ShaderNodeTexVoronoi")
-    metrics = _choices(probe, "distance")
-    for dimensions, feature in itertools.product(("1D", "2D", "3D", "4D"), _choices(probe, "feature")):
+    asked = probe("ShaderNodeTexVoronoi")
+    metrics = choices(asked, "distance")
+    for dimensions, feature in itertools.product(("1D", "2D", "3D", "4D"), choices(asked, "feature")):
         has_cells = feature in ("F1", "F2", "SMOOTH_F1")
         outputs = ["Radius"] if feature == "N_SPHERE_RADIUS" else ["Distance"]
         if has_cells:
@@ -242,137 +242,13 @@ def voronoi(side):
                 "distance": metric,
                 "normalize": rng.random() < 0.4,
             }
-            settings.append(_Setting("ShaderNodeTexVoronoi", properties, numbers, output))
-    return _rendered(settings, side)
+            settings.append(Setting("ShaderNodeTexVoronoi", properties, numbers, output))
+    return rendered(settings, side)
 
 
 def gradient(side):
-    kinds = _choices(_probe("ShaderNodeTexGradient"), "gradient_type")
-    return _rendered([_Setting("ShaderNodeTexGradient", {"gradient_type": kind}, {}, "Fac") for kind in kinds], side)
-
-
-def waves(side):
-    rng, settings = random.Random(5), []
-    directions = [("BANDS", d) for d in ("X", "Y", "Z", "DIAGONAL")] + [("RINGS", d) for d in ("X", "Y", "Z", "SPHERICAL")]
-    for (kind, direction), profile, is_bent in itertools.product(directions, ("SIN", "SAW", "TRI"), (False, True)):
-        numbers = {
-            "Scale": rng.uniform(0.3, 4.0),
-            "Distortion": rng.uniform(-3.0, 6.0) if is_bent else 0.0,
-            "Detail": rng.uniform(0.0, 5.0),
-            "Detail Scale": rng.uniform(-2.0, 3.0),
-            "Detail Roughness": rng.uniform(0.0, 1.2),
-            "Phase Offset": rng.uniform(-20.0, 20.0),
-        }
-        properties = {
-            "wave_type": kind,
-            "wave_profile": profile,
-            "bands_direction" if kind == "BANDS" else "rings_direction": direction,
-        }
-        settings.append(_Setting("ShaderNodeTexWave", properties, numbers, rng.choice(("Fac", "Color"))))
-    return _rendered(settings, side)
-
-
-def magic(side):
-    rng, settings = random.Random(6), []
-    for depth, output in itertools.product(range(11), ("Color", "Fac")):
-        # Deeper waves without distortion are even.
-        for distortion in (rng.uniform(-2.0, 3.0), rng.uniform(-2.0, 3.0) if depth else 0.0):
-            # Far places fold by the period of the waves.
-            numbers = {"Scale": rng.choice((rng.uniform(0.1, 6.0), 40.0)), "Distortion": distortion}
-            settings.append(_Setting("ShaderNodeTexMagic", {"turbulence_depth": depth}, numbers, output))
-    return _rendered(settings, side)
-
-
-def cells(side):
-    """Checkers and bricks."""
-    rng, settings = random.Random(7), []
-    colors = {"Color1": (0.9, 0.2, 0.1, 1.0), "Color2": (0.1, 0.4, 0.8, 1.0), "Mortar": (0.3, 0.9, 0.4, 1.0)}
-    for scale, output in itertools.product((0.0, -3.3, 2.0, 7.1, 1e4), ("Color", "Fac")):
-        settings.append(_Setting("ShaderNodeTexChecker", {}, {"Scale": scale, **_two(colors)}, output))
-    for offset_rows, squash_rows, output in itertools.product((1, 2, 5), (1, 3), ("Color", "Fac")):
-        for smooth in (0.0, rng.uniform(0.05, 1.0)):
-            properties = {
-                "offset": rng.uniform(0.0, 1.0),
-                "offset_frequency": offset_rows,
-                "squash": rng.uniform(0.3, 2.0),
-                "squash_frequency": squash_rows,
-            }
-            numbers = {
-                "Scale": rng.uniform(-8.0, 8.0),
-                "Mortar Size": rng.uniform(0.0, 0.1),
-                "Mortar Smooth": smooth,
-                "Bias": rng.uniform(-1.0, 1.0),
-                "Brick Width": rng.uniform(0.1, 1.0),
-                "Row Height": rng.uniform(0.1, 0.6),
-                **colors,
-            }
-            settings.append(_Setting("ShaderNodeTexBrick", properties, numbers, output))
-    return _rendered(settings, side)
-
-
-def _two(colors):
-    return {name: colors[name] for name in ("Color1", "Color2")}
-
-
-def white_noise(side):
-    settings = [
-        _Setting("ShaderNodeTexWhiteNoise", {"noise_dimensions": dimensions}, {}, output)
-        for dimensions, output in itertools.product(("1D", "2D", "3D", "4D"), ("Value", "Color"))
-    ]
-    return _rendered(settings, side)
-
-
-def gabor(side):
-    """The node of Blender 4.3 and newer."""
-    rng, settings = random.Random(8), []
-    for kind, output in itertools.product(("2D", "3D"), ("Value", "Phase", "Intensity")):
-        for anisotropy in (0.0, 1.0, rng.uniform(0.1, 0.9)):
-            numbers = {
-                "Scale": rng.uniform(1.0, 8.0),
-                "Frequency": rng.uniform(0.0, 6.0),
-                "Anisotropy": anisotropy,
-                "Orientation 2D": rng.uniform(-4.0, 4.0),
-                "Orientation 3D": [rng.uniform(-1.0, 1.0) for _ in range(3)],
-            }
-            settings.append(_Setting("ShaderNodeTexGabor", {"gabor_type": kind}, numbers, output))
-    return _rendered(settings, side)
-
-
-def radial_tiling(side):
-    """The node of Blender 5.0 and newer."""
-    rng, settings = random.Random(9), []
-    outputs = ("Segment Coordinates", "Segment ID", "Segment Width", "Segment Rotation")
-    for output, sides, roundness in itertools.product(
-        outputs, (2.0, 3.0, 6.0, rng.uniform(2.2, 2.8), rng.uniform(4.1, 7.9)), (0.0, 0.3, 1.0)
-    ):
-        # With two sides the tangent of a right angle is whatever rounding makes it.
-        if sides == 2.0 and roundness not in (0.0, 1.0):
-            continue
-        properties = {"normalize": rng.random() < 0.5}
-        settings.append(_Setting("ShaderNodeRadialTiling", properties, {"Sides": sides, "Roundness": roundness}, output))
-    return _rendered(settings, side)
-
-
-def spectrum(side):
-    """Wavelengths from beyond the visible on both sides."""
-    board = Board(int(side))
-    for number, (low, high) in enumerate(((300.0, 900.0), (370.0, 390.0), (690.0, 790.0), (500.0, 510.0))):
-        board.square(f"{number} {low:g}", _wavelengths(low, high))
-    return board.answer()
-
-
-def _wavelengths(low, high):
-    def build(tree, vector):
-        parts, scaled = tree.nodes.new("ShaderNodeSeparateXYZ"), tree.nodes.new("ShaderNodeMath")
-        node = tree.nodes.new("ShaderNodeWavelength")
-        tree.links.new(vector, parts.inputs[0])
-        tree.links.new(parts.outputs[2], scaled.inputs[0])
-        scaled.operation = "MULTIPLY_ADD"
-        scaled.inputs[1].default_value, scaled.inputs[2].default_value = 0.5 * (high - low), 0.5 * (high + low)
-        tree.links.new(scaled.outputs[0], node.inputs[0])
-        return node.outputs[0]
-
-    return build
+    kinds = choices(probe("ShaderNodeTexGradient"), "gradient_type")
+    return rendered([Setting("ShaderNodeTexGradient", {"gradient_type": kind}, {}, "Fac") for kind in kinds], side)
 
 
 def curves(side):

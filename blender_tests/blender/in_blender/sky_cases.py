@@ -5,8 +5,6 @@ import itertools
 import math
 
 import bpy
-import numpy as np
-import stage
 from mathutils import Matrix, Vector
 from procedural_cases import Board
 
@@ -19,7 +17,7 @@ def _models():
     return [item.identifier for item in bpy.types.ShaderNodeTexSky.bl_rna.properties["sky_type"].enum_items]
 
 
-def _atmospheres():
+def atmospheres():
     return [model for model in _models() if model not in ("PREETHAM", "HOSEK_WILKIE")]
 
 
@@ -85,7 +83,7 @@ class _Patches(Board):
         return dataclasses.replace(found, materials=materials)
 
 
-def _node(tree, properties):
+def node_of(tree, properties):
     node = tree.nodes.new("ShaderNodeTexSky")
     for name, value in properties.items():
         # Blender 5.0 has renamed dust.
@@ -95,7 +93,7 @@ def _node(tree, properties):
 
 def _sky(directions, **properties):
     def build(tree, vector):
-        node = _node(tree, properties)
+        node = node_of(tree, properties)
         tree.links.new(directions(tree, vector), node.inputs[0])
         return node.outputs[0]
 
@@ -134,7 +132,7 @@ _ATMOSPHERES = {
 def scattering(side):
     """The light of the atmosphere, without the sun's disc."""
     board = Board(int(side))
-    for model, elevation in itertools.product(_atmospheres(), (15.0, 90.0, 52.0, 0.5, 0.0, -3.0, -90.0, 170.0, -250.0)):
+    for model, elevation in itertools.product(atmospheres(), (15.0, 90.0, 52.0, 0.5, 0.0, -3.0, -90.0, 170.0, -250.0)):
         places = _ATMOSPHERES if elevation in (15.0, -3.0) else ("plain",)
         for place in places:
             board.square(
@@ -156,14 +154,14 @@ def suns(side):
     board = _Patches(int(side))
     # A direction in floats has an error of 6e-8, which narrow discs show at their limb.
     places = [(15.0, 0.545), (60.0, 0.6), (-0.1, 0.545), (0.1, 2.0), (80.0, 40.0), (10.0, 90.0), (90.0, 3.0), (1.0, 1.0)]
-    for model, (elevation, size), high in itertools.product(_atmospheres(), places, (0.0, 8000.0)):
+    for model, (elevation, size), high in itertools.product(atmospheres(), places, (0.0, 8000.0)):
         turned = 0.3 + elevation
         # The smallest sun is 0.0005 radians wide.
         reach = 0.6 * max(size * _DEGREES, 0.0005)
         sun = {"sun_elevation": elevation * _DEGREES, "sun_rotation": turned, "sun_size": size * _DEGREES, "altitude": high}
 
         def build(tree, vector, sun=sun, model=model, reach=reach):
-            node = _node(tree, {"sky_type": model, "sun_intensity": 0.7, **sun})
+            node = node_of(tree, {"sky_type": model, "sun_intensity": 0.7, **sun})
             _look_around(node, sun["sun_elevation"], sun["sun_rotation"], reach)
             return node.outputs[0]
 
@@ -171,38 +169,7 @@ def suns(side):
     return board.answer()
 
 
-def noise():
-    """Return {elevation: the relative variance of a sample of Lancer over that of Cycles} of matt things under sun and sky."""
-    found = {}
-    for elevation in (3.0, 15.0, 50.0):
-        scene = stage.empty(96, 64, samples=16)
-        scene.lancer.seed = scene.cycles.seed = 0
-        tree = _world(scene)
-        sky = _node(tree, {"sky_type": _atmospheres()[-1], "sun_elevation": elevation * _DEGREES, "sun_rotation": 2.3})
-        tree.links.new(sky.outputs[0], tree.nodes["Background"].inputs["Color"])
-        tree.nodes["Background"].inputs["Strength"].default_value = 0.1
-        matt = _matt()
-        stage.plane(12.0, matt)
-        for x in (-1.5, 0.0, 1.5):
-            stage.cube(1.0, matt, location=(x, 0.3 * x, 0.5))
-        stage.camera()
-        variances = {}
-        for engine in ("CYCLES", "LANCER"):
-            scene.render.engine = engine
-            cycles = scene.cycles
-            cycles.samples, cycles.use_adaptive_sampling, cycles.use_denoising = 16, False, False
-            cycles.filter_width, cycles.light_sampling_threshold = 1.0, 0.0
-            pictures = []
-            for seed in range(4):
-                cycles.seed = scene.lancer.seed = seed
-                pictures.append(stage.picture(scene)[:, :, :3].astype(float))
-            mean = np.mean(pictures, axis=0)
-            variances[engine] = float(np.mean(np.var(pictures, axis=0, ddof=1) / (mean + 0.01 * mean.mean()) ** 2))
-        found[str(elevation)] = variances["LANCER"] / variances["CYCLES"]
-    return found
-
-
-def _world(scene):
+def world_nodes(scene):
     scene.world = bpy.data.worlds.new("World")
     if bpy.app.version < (5, 0):
         scene.world.use_nodes = True
@@ -214,7 +181,7 @@ def _world(scene):
     return tree
 
 
-def _matt():
+def matt():
     material = bpy.data.materials.new("Matt")
     material.use_nodes = True
     tree = material.node_tree

@@ -60,7 +60,7 @@ def _background(trees, tree, image):
         color = [trees.write(tree, "ShaderNodeVectorMath", {"operation": "ABSOLUTE"}, inputs), "Vector"]
     strength = dice.number(0.2, 1.2)
     if image is None and not isinstance(color[0], str) and dice.chance(0.2):
-        # Of the brightness of the other skies.
+        # A tenth of the strength makes it as bright as the other skies.
         color, strength = [_sky(trees, tree), "Color"], 0.1 * strength
     inputs = {"Color": color, "Strength": strength}
     if dice.chance(0.05):

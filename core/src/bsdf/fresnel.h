@@ -123,7 +123,7 @@ template <class F> LANCER_LANE Vec3<F> conductor_response(const Lobe<F> &lobe, F
           fresnel_conductor(cos_i, lobe.f0.z, lobe.f90.z)};
 }
 
-// Of facets without a film.
+// The response of facets without a film.
 template <class F> LANCER_LANE FacetResponse<F> bare_response(const Lobe<F> &lobe, F cos_i) {
   using V = Vec3<F>;
   FacetResponse<F> r;

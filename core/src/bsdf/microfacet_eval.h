@@ -117,7 +117,7 @@ LANCER_LANE ColorValue<F> microfacet_eval_through(const Lobe<F> &lobe, const Vec
                           (1.0f - response.reflected_share()) * common * lobe.g1});
 }
 
-// Of Scatter::Through: the value of reflection for the direction mirrored at the surface. h: half vector of wo and that.
+// Scatter::Through takes the value of reflection for the direction mirrored at the surface, with its half vector.
 template <class F> bool passes_through(const Lobe<F> &lobe) { return lobe.variant == static_cast<uint8_t>(Scatter::Through); }
 template <class V> LANCER_LANE V mirrored_beyond(const V &w) { return {w.x, w.y, -w.z}; }
 

@@ -113,7 +113,7 @@ template <class F> LANCER_LANE Vec3<F> film_color_of_gaussians(F path) {
   // Heights are val sqrt(2 pi var) / 1.0685e-7 of the authors' fit.
   const F red = bell(0.84659000f, 1.6810e6f, 4.3278e9f) + bell(0.15386804f, 2.2399e6f, 4.5282e9f);
   const F green = bell(1.00022189f, 1.7953e6f, 9.3046e9f), blue = bell(1.00112249f, 2.2084e6f, 6.6121e9f);
-  // Of the white of Rec. 709, in its primaries.
+  // Scale to the white of Rec. 709, and convert to its primaries.
   const Vec3<F> xyz(0.95047f * red, green, 1.08883f * blue);
   return {3.2404542f * xyz.x - 1.5371385f * xyz.y - 0.4985314f * xyz.z,
           -0.9692660f * xyz.x + 1.8760108f * xyz.y + 0.0415560f * xyz.z,

@@ -95,9 +95,11 @@ LightSet make_lights(Scene &scene, Description &description, const BuildContext 
     lights.push_back(place_light(light, scene.normalisation));
     add_lamp_shader(light, lights.back(), scene.normalisation, scene.lamp_shaders);
   }
-  for (Light &light : lights)
-    if (light.shader != kNone)
-      light.level = mean_strength(light, scene.lamp_shaders, scene.node_scene(nullptr));
+  if (!scene.lamp_shaders.empty())
+    parallel_for(context, lights.size(), [&](size_t i) {
+      if (lights[i].shader != kNone)
+        lights[i].level = mean_strength(lights[i], scene.lamp_shaders, scene.node_scene(nullptr));
+    });
   return LightSet(std::move(lights), make_emitters(scene.geometry, scene.slots, scene.materials, emission, context),
                   scene.geometry.instances.size(),
                   Environment(scene.world, scene.images, scene.normalisation, context, scene.features & kFeatureGlass),

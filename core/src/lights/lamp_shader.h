@@ -27,7 +27,7 @@ struct LampShaders {
   bool empty() const { return of.empty(); }
 };
 
-// What nodes read of a lamp, in the normalised world.
+// The input of a lamp's nodes, in the normalised world.
 struct LampPoint {
   glm::dvec3 p{0.0};
   glm::vec3 n{0.0f}, wo{0.0f}; // unit, on the side of the lit place

@@ -26,7 +26,7 @@ constexpr float kWeight[kNodes] = {0.017508936f, 0.041354774f, 0.066788391f, 0.0
 constexpr int kWaves = 21;
 constexpr float kWaveStep = 20.0f; // nm
 
-// Of the sun above the atmosphere, W / (m^2 nm).
+// Irradiance of the sun above the atmosphere, W / (m^2 nm).
 constexpr float kSun[kWaves] = {1.4575683f, 1.5659631f, 1.6514845f, 1.7149624f, 1.7579798f, 1.7825641f, 1.7909511f,
                                 1.7854134f, 1.7681555f, 1.7412207f, 1.7064713f, 1.6655609f, 1.6199344f, 1.5708360f,
                                 1.5193233f, 1.4662850f, 1.4124585f, 1.3584497f, 1.3047491f, 1.2517496f, 1.1997600f};
@@ -93,7 +93,7 @@ constexpr float kAerosolScattering[4] = {
     static_cast<float>(1.5908e-22 * kAerosolColumn), static_cast<float>(1.7711e-22 * kAerosolColumn),
     static_cast<float>(2.0942e-22 * kAerosolColumn), static_cast<float>(2.4033e-22 * kAerosolColumn)};
 constexpr float kAerosolScale = 0.73f, kAerosolBackground = static_cast<float>(2e6 / kAerosolColumn);
-// From the four wavelengths to CIE XYZ.
+// CIE XYZ of the four wavelengths.
 constexpr float kXyz[4][3] = {{53.386918f, 22.981338f, 0.0f},
                               {43.904844f, 71.347796f, 0.10250687f},
                               {1.6137278f, 18.422961f, 31.742921f},

@@ -32,31 +32,33 @@ template <class F> Vector3<F> to_object(const Site<F> &site, uint32_t kind, cons
     return narrow(vector_to_object(site, widen(v) * D(site.user_scale())));
   return narrow(vector_to_object(site, from_user_world(site, widen(v))) + translation_of(site, &Instance::to_object));
 }
-template <class F> Vector3<F> from_camera(const Site<F> &site, uint32_t kind, const Vector3<F> &v) {
+// of_point, of_direction: the maps of a camera.
+template <class F, class OfPoint, class OfDirection>
+Vector3<F> by_camera(const Site<F> &site, uint32_t kind, const Vector3<F> &v, const OfPoint &of_point,
+                     const OfDirection &of_direction) {
   const Camera *camera = site.scene.camera;
   if (!camera)
     return v;
-  const double scale = site.user_scale();
-  const Vector3<F> there = ask_camera<F>(widen(v), [&](int, const glm::dvec3 &p) {
-    if (kind != kIsPoint)
-      return glm::vec3(camera->direction_from_camera(p));
-    const glm::dvec3 place = camera->direction_from_camera(p * scale) + camera->to_world.translation;
-    return glm::vec3(site.scene.normalisation ? site.scene.normalisation->to_world(place) : place);
-  });
+  const Vector3<F> there = ask_camera<F>(
+      widen(v), [&](int, const glm::dvec3 &p) { return kind == kIsPoint ? of_point(*camera, p) : of_direction(*camera, p); });
   return kind == kIsNormal ? unit_or_zero(there) : there;
 }
-template <class F> Vector3<F> to_camera(const Site<F> &site, uint32_t kind, const Vector3<F> &v) {
-  const Camera *camera = site.scene.camera;
-  if (!camera)
-    return v;
-  const double scale = site.user_scale();
-  const Vector3<F> there = ask_camera<F>(widen(v), [&](int, const glm::dvec3 &p) {
-    if (kind != kIsPoint)
-      return camera->direction_to_camera(p);
-    const glm::dvec3 place = site.scene.normalisation ? site.scene.normalisation->to_normalised(p) : p;
-    return glm::vec3(glm::dvec3(camera->to_camera(place)) / scale);
+template <class F> Vector3<F> from_camera(const Site<F> &site, uint32_t kind, const Vector3<F> &v) {
+  const auto of_point = [&](const Camera &camera, const glm::dvec3 &p) {
+    const glm::dvec3 place = camera.direction_from_camera(p * site.user_scale()) + camera.to_world.translation;
+    return glm::vec3(site.scene.normalisation ? site.scene.normalisation->to_world(place) : place);
+  };
+  return by_camera(site, kind, v, of_point, [](const Camera &camera, const glm::dvec3 &d) {
+    return glm::vec3(camera.direction_from_camera(d));
   });
-  return kind == kIsNormal ? unit_or_zero(there) : there;
+}
+template <class F> Vector3<F> to_camera(const Site<F> &site, uint32_t kind, const Vector3<F> &v) {
+  const auto of_point = [&](const Camera &camera, const glm::dvec3 &p) {
+    const glm::dvec3 place = site.scene.normalisation ? site.scene.normalisation->to_normalised(p) : p;
+    return glm::vec3(glm::dvec3(camera.to_camera(place)) / site.user_scale());
+  };
+  return by_camera(site, kind, v, of_point,
+                   [](const Camera &camera, const glm::dvec3 &d) { return camera.direction_to_camera(d); });
 }
 
 template <class F> Value<F> vector_transform_node(const Inputs<F> &in, const Site<F> &site) {

@@ -34,7 +34,7 @@ struct SkyPlace {
   float t, q;
 };
 
-// Of the columns, the azimuth counted from the sun's.
+// Cosines of the columns' azimuths, counted from the sun's.
 struct alignas(64) AzimuthCosines {
   float of[kSkyHalf];
 };

@@ -1,4 +1,4 @@
-// What the nodes of lamps say at points of them, in lanes.
+// The strength of lamps with nodes at points of the lamps, in lanes.
 //
 // In: points of lamps that have nodes, from the light stage and the stage of met lights. Out: the factor of their light there.
 #pragma once
