@@ -105,7 +105,7 @@ TEST(MaterialRoom, MoreNormalsThanABsdfHoldsAreSaid) {
   const std::string most = std::to_string(kMaxFrames), more = std::to_string(kMaxFrames + 1);
   EXPECT_EQ(description.messages.text(), "material 'Wood': " + more +
                                              " normals may overlap in one place; lobes beyond the first " + most +
-                                             " normals use the shading normal\n");
+                                             " normals use the shading normal, and fibres among them are left out\n");
 }
 
 lancer_principled all_layers(uint32_t rules) {

@@ -11,7 +11,7 @@ template <class F> struct Bsdf<F>::Direction {
   V wi, h, weight; // in the lobe's frame; weight of single directions over their probability within the lobe
   F probability;   // of single directions, within the lobe
   B valid, single, has_h;
-  B first; // hair: reflected by the fibre's surface
+  B through; // passes the surface; hair: is not reflected by the fibre's surface
 };
 
 // Samples a direction from one lobe, in the lanes that selected it.
@@ -21,6 +21,7 @@ template <class F> void Bsdf<F>::draw(const Lobe<F> &lobe, B mine, F u_side, F u
   V wi = direction.cosine, h(zero), weight(zero);
   F probability = one;
   B valid = uniform<F>(true), single = lobe.delta, has_h = uniform<F>(false);
+  B reflected = uniform<F>(is_hair(lobe, Hair::Reflection));
   const auto take_single = [&](const DeltaDirection<F> &given) __attribute__((always_inline)) {
     wi = select(lobe.delta, given.wi, wi);
     weight = V(given.weight);
@@ -88,12 +89,8 @@ template <class F> void Bsdf<F>::draw(const Lobe<F> &lobe, B mine, F u_side, F u
     take_single(dielectric_sample(lobe, wo_l, u_side));
     break;
   case LobeShape::Hair:
+    wi = is_hair(lobe, Hair::Chiang) ? chiang_sample(lobe, wo_l, u_side, u, v, reflected) : hair_sample(lobe, wo_l, u, v);
     break;
-  }
-  if (is_hair(lobe)) {
-    B first = uniform<F>(is_hair(lobe, Hair::Reflection));
-    wi = is_hair(lobe, Hair::Chiang) ? chiang_sample(lobe, wo_l, u_side, u, v, first) : hair_sample(lobe, wo_l, u, v);
-    direction.first = select(mine, first, direction.first);
   }
   const bool wide = lobe.shape == LobeShape::Lambert || lobe.shape == LobeShape::Matte || lobe.shape == LobeShape::Sheen ||
                     lobe.shape == LobeShape::Toon || is_hair(lobe);
@@ -104,6 +101,7 @@ template <class F> void Bsdf<F>::draw(const Lobe<F> &lobe, B mine, F u_side, F u
       valid = valid & (single | (wi.z > zero));
   }
   direction.wi = select(mine, wi, direction.wi);
+  direction.through = select(mine, is_hair(lobe) ? !reflected : wi.z < zero, direction.through);
   direction.h = select(mine, h, direction.h);
   direction.weight = select(mine & single, lobe.color * weight / lobe.probability, direction.weight);
   direction.probability = select(mine, lobe.probability * probability, direction.probability);
@@ -175,10 +173,7 @@ template <class F> BsdfSample<F> Bsdf<F>::sample(F u_lobe, F u, F v) const {
   }
   Local local;
   turn_to_frames(result.wi, frame, direction.wi, direction.single, local);
-  B through = direction.wi.z < zero;
-  for (int i = 0; i < count; ++i)
-    if (is_hair(lobes[i]))
-      through = select(equal(chosen, numbered(i)), !direction.first, through);
+  const B through = direction.through;
   result.transmitted = through;
   result.delta = direction.single;
   B valid = direction.valid & (direction.wi.z != zero);

@@ -217,10 +217,12 @@ template <class F> LANCER_LANE void add_hair_fibre(Bsdf<F> &bsdf, const LobeInpu
   const V tangent = unit_or(inputs.tangent, bsdf.frames[0].t);
   // A tangent along wo has no plane with it.
   const uint8_t frame = add_frame(bsdf, unit_or(cross(tangent, bsdf.wo), bsdf.frames[0].b), tangent);
+  // In the frame of another normal the fibre has no meaning.
+  if (frame == 0)
+    return;
   Lobe<F> lobe = make_chiang(inputs.weight, inputs.roughness, inputs.roughness_across, inputs.edge.x, inputs.ior, inputs.offset,
-                             max(inputs.color, V(F(0.0f))), bsdf.frames[frame].to_local(bsdf.ng));
+                             max(inputs.color, V(F(0.0f))), bsdf.frames[frame].to_local(bsdf.ng), inputs.rules);
   lobe.frame = frame;
-  lobe.rules = inputs.rules;
   lobe.albedo = chiang_albedo(lobe, bsdf.wo_local[frame]);
   bsdf.add(lobe);
 }

@@ -38,8 +38,12 @@ template <class F> struct Frame {
 Frame(const glm::vec3 &)->Frame<float>;
 Frame(const glm::vec3 &, const glm::vec3 &)->Frame<float>;
 
-// Returns the mirrored direction in the local frame.
+// Returns a / b, or 0 for b = 0.
+template <class F> LANCER_LANE F quotient(F a, F b) { return select(b != F(0.0f), a / b, F(0.0f)); }
+
+// Returns the mirrored direction in the local frame, and the one mirrored at the surface.
 template <class V> LANCER_LANE V reflect_local(const V &w) { return {-w.x, -w.y, w.z}; }
+template <class V> LANCER_LANE V mirrored_beyond(const V &w) { return {w.x, w.y, -w.z}; }
 
 // Returns tan^2 of a direction's angle to n. Not computed from 1 - cos^2, which loses a small roughness in rounding.
 template <class V> LANCER_LANE NumberOf<V> tan2_theta(const V &w) { return (w.x * w.x + w.y * w.y) / (w.z * w.z); }

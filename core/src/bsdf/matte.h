@@ -231,7 +231,7 @@ template <class F> LANCER_LANE ColorValue<F> matte_eval(const Lobe<F> &lobe, con
     return where<F>(above, {Vec3<F>(value.f), value.pdf});
   }
   case Matte::RoughTranslucent: {
-    const Vec3<F> mirrored(wi.x, wi.y, -wi.z);
+    const Vec3<F> mirrored = mirrored_beyond(wi);
     return where<F>(mirrored.z > zero, oren_nayar_eval(lobe, wo, mirrored));
   }
   case Matte::Translucent:

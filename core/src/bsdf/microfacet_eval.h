@@ -119,7 +119,6 @@ LANCER_LANE ColorValue<F> microfacet_eval_through(const Lobe<F> &lobe, const Vec
 
 // Scatter::Through takes the value of reflection for the direction mirrored at the surface, with its half vector.
 template <class F> bool passes_through(const Lobe<F> &lobe) { return lobe.variant == static_cast<uint8_t>(Scatter::Through); }
-template <class V> LANCER_LANE V mirrored_beyond(const V &w) { return {w.x, w.y, -w.z}; }
 
 // A sampled direction. delta: single, with the weight of the lobe over the probability of the choice.
 template <class F> struct MicrofacetDirection {

@@ -157,9 +157,10 @@ LANCER_LANE F bump_factor(const Lobe<F> &lobe, const Vec3<F> &n, const Vec3<F> &
     if (smooth_end && correction)
       kept = conty_shadowing(cos_ns, cos_tilt);
     // The factor is 0 if the direction is on one side of ns and on the other side of n; before 5.0, narrow lobes ignore that n
-    // leans away from ns. Blender 3.x checks wide lobes only.
+    // leans away from ns, and hair and glossy toon know no sides. Blender 3.x checks wide lobes only.
     const F tilt = smooth_end || lobe.rules >= Rules::Blender50 ? cos_tilt : one;
-    if (lobe.rules != Rules::Blender3)
+    const bool sided = smooth_end || (lobe.shape != LobeShape::Hair && lobe.shape != LobeShape::Toon);
+    if (lobe.rules >= Rules::Blender50 || (lobe.rules != Rules::Blender3 && sided))
       kept = select(cos_ns * tilt * cos_n < 0.0f, F(0.0f), kept);
   }
   return select(same(n, ns), one, kept);

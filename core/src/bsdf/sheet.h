@@ -31,7 +31,6 @@ template <class F> LANCER_LANE SheetShares<F> sheet_shares(const Lobe<F> &front,
   const F depth = 1.0f / select(enters, entering.cos_t, F(1.0f));
   const V clear = select(enters, V(pow(tint.x, depth), pow(tint.y, depth), pow(tint.z, depth)), none);
   const V back = r * clear, closed = one - back * back;
-  const auto quotient = [](F a, F b) __attribute__((always_inline)) { return select(b != F(0.0f), a / b, F(0.0f)); };
   const V all = clear * entering.through * t;
   const V through(quotient(all.x, closed.x), quotient(all.y, closed.y), quotient(all.z, closed.z));
   return {entering.reflected + through * back, through};

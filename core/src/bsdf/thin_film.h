@@ -51,7 +51,7 @@ template <class F> LANCER_LANE Polarized<F> polarized(F cos_i, F eta) {
 template <class F> struct Phasor { F re, im; };
 
 // The boundary of a metal of index n + i k below a medium of index outside: reflectances and phases by polarisation. Born and
-// Wolf, Principles of Optics, 14.4.1. edge: reflectance at 82 degrees if the curve is F82, or negative.
+// Wolf, Principles of Optics, 14.4.1. edge: reflectance at 82 degrees, of F82 alone.
 template <class F> struct PolarizedMetal {
   F s, p;
   Phasor<F> phase_s, phase_p;
@@ -62,7 +62,6 @@ template <class F> LANCER_LANE PolarizedMetal<F> polarized_metal(F cos_i, F outs
   const F length = hypot(t, im);
   const F u2 = max(0.5f * (length + t), zero), v2 = max(0.5f * (length - t), zero);
   const F u = sqrt(u2), v = sqrt(v2);
-  const auto quotient = [&](F a, F b) __attribute__((always_inline)) { return select(b != zero, a / b, zero); };
   const auto square = [](F x) __attribute__((always_inline)) { return x * x; };
   PolarizedMetal<F> metal;
   if (f82) {
@@ -87,7 +86,7 @@ template <class F> LANCER_LANE PolarizedMetal<F> polarized_metal(F cos_i, F outs
 // The colour by which light of an optical path difference adds to that without: of cosine and sine of its phase at reflection.
 template <class F> struct FilmColor { Vec3<F> re, im; };
 
-// From Blender 5.0 on the colour matching functions of a table.
+// Table lookup of the colour matching functions, from Blender 5.0 on.
 template <class F> LANCER_LANE FilmColor<F> film_color(F path) {
   constexpr int n = kFilmNodes;
   const tables::AxisPlace<F> at = tables::place_on_axis(path * (2.0f * kPi / kFilmLength), n);
@@ -103,7 +102,8 @@ template <class F> LANCER_LANE FilmColor<F> film_color(F path) {
   return {{part[0][0], part[1][0], part[2][0]}, {part[0][1], part[1][1], part[2][1]}};
 }
 
-// Before, sums of Gaussians for X, Y and Z; phases at reflection are 0 or a half turn, so that the sine is not needed.
+// Sums of Gaussians for X, Y and Z, before Blender 5.0; phases at reflection are 0 or a half turn, so that the sine is not
+// needed.
 template <class F> LANCER_LANE Vec3<F> film_color_of_gaussians(F path) {
   // Beyond 30 micrometres nothing is left.
   const F x = (2.0f * kPi * 1e-9f) * min(path, F(3e4f)), x2 = x * x;
@@ -178,7 +178,8 @@ template <class F> void add_film(const Lobe<F> &lobe, F cos_i, FacetResponse<F> 
     const MaskOf<F> scales = (own > 1e-5f) & (own < one) & !same(reflected, V(one));
     const auto scaled = [&](F f, F f0) __attribute__((always_inline)) {
       const F near = clamp01((f - one) / (own - one));
-      return select(scales, f * (one + (f0 / own - one) * near), f);
+      // A tint above 1 may ask for more light than there is.
+      return select(scales, clamp01(f * (one + (f0 / own - one) * near)), f);
     };
     reflected = {scaled(reflected.x, lobe.f0.x), scaled(reflected.y, lobe.f0.y), scaled(reflected.z, lobe.f0.z)};
     if (refracts(lobe))

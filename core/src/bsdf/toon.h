@@ -7,8 +7,6 @@
 #include "sampling/elementary.h"
 #include "sampling/warp.h"
 
-#include <numbers>
-
 namespace lancer {
 
 enum class Toon : uint8_t { Diffuse = 0, Glossy = 1 };
@@ -16,7 +14,7 @@ enum class Toon : uint8_t { Diffuse = 0, Glossy = 1 };
 // size and smooth: of 0 ... 1. alpha_x: the angle of full brightness; alpha_y: that of the edge; energy: the sampled angle;
 // shininess: 1 - cos of that.
 template <class F> LANCER_LANE Lobe<F> make_toon(const Vec3<F> &weight, F size, F smooth, Toon variant, Rules rules) {
-  constexpr float right = 0.5f * std::numbers::pi_v<float>;
+  constexpr float right = 0.5f * kPi;
   Lobe<F> lobe;
   lobe.shape = LobeShape::Toon;
   lobe.variant = static_cast<uint8_t>(variant);
@@ -54,16 +52,21 @@ LANCER_LANE ColorValue<F> toon_eval(const Lobe<F> &lobe, const Vec3<F> &wo, cons
   if (lobe.rules == Rules::Blender3)
     seen = select(drew, lobe.energy * (1.0f - min(0.5f * chord2 / lobe.shininess, F(1.0f))), angle);
   MaskOf<F> there = (angle < lobe.energy) & (wi.z >= F(0.0f));
-  if (lobe.variant == static_cast<uint8_t>(Toon::Glossy))
+  if (lobe.variant == static_cast<uint8_t>(Toon::Glossy)) {
+    // Cycles 3 takes directions beyond a right angle to the mirrored one as being there.
+    if (lobe.rules == Rules::Blender3) {
+      constexpr float right = 0.5f * kPi;
+      seen = select(drew, seen, min(angle, F(right)));
+      there = drew | (seen < lobe.energy) | (lobe.energy >= right);
+    }
     there = there & (wo.z > F(0.0f)) & (wi.z > F(0.0f));
-  const F pdf = 0.5f * kInvPi / lobe.shininess;
+  }
+  const F pdf = warp_cone_pdf(lobe.shininess);
   return where<F>(there, {Vec3<F>(pdf * toon_brightness(lobe, seen)), pdf});
 }
 
 template <class F> LANCER_LANE Vec3<F> toon_sample(const Lobe<F> &lobe, const Vec3<F> &wo, F u, F v) {
-  const F down = u * lobe.shininess, sine = sqrt(max(down * (2.0f - down), F(0.0f)));
-  const SinCos<F> phi = sin_cos_turn(v);
-  const Vec3<F> cone(sine * phi.cos, sine * phi.sin, 1.0f - down);
+  const Vec3<F> cone = warp_cone(u, v, lobe.shininess);
   return lobe.variant == static_cast<uint8_t>(Toon::Glossy) ? Frame<F>(toon_axis(lobe, wo)).to_world(cone) : cone;
 }
 

@@ -26,10 +26,7 @@ bool is_matt_sheet(const PrincipledDescription &principled) {
 } // namespace
 
 bool lets_light_through(const Material &material) {
-  return material.is_transparent() ||
-         std::any_of(material.lobes.begin(), material.lobes.end(), [](const LobeDescription &lobe) {
-           return is_glass(lobe) || (lobe.principled && is_matt_sheet(*lobe.principled));
-         });
+  return material.is_transparent() || std::any_of(material.lobes.begin(), material.lobes.end(), is_glass);
 }
 
 namespace {

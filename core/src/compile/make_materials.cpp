@@ -58,7 +58,7 @@ size_t add_principled(const LobeDescription &lobe, const PrincipledDescription &
     frames.reflecting(lobe.normal);
   if (!old)
     frames.wide(lobe.normal);
-  // Sheets have two lobes instead of glass, and two more of diffuse light.
+  // Two lobes of a glass sheet and two of a matt one stand beside those of lanes without a wall.
   const size_t sheet = may_be_positive(in.thin_wall) ? 4 : 0;
   // Before Blender 4, plastic and metal are one lobe, and glass can be two.
   return sheet + size_t(sheen) + size_t(coat) + size_t(metal && !old) + (glass ? (old ? 2 : 1) : 0) + 2;
@@ -114,7 +114,8 @@ void report_limits(const std::string &object, const Material &material, Messages
                              std::to_string(kMaxLobes) + " are used");
   if (demand.frames > size_t(kMaxFrames))
     messages.add(object, std::to_string(demand.frames) + " normals may overlap in one place; lobes beyond the first " +
-                             std::to_string(kMaxFrames) + " normals use the shading normal");
+                             std::to_string(kMaxFrames) +
+                             " normals use the shading normal, and fibres among them are left out");
 }
 
 namespace {

@@ -185,9 +185,9 @@ void collect(const LobeDescription &lobe, std::vector<Parameter> &parameters) {
 }
 
 // Whether a sheet of glass may be so smooth that rays pass it straight: by its facets, or by an index near 1. A sheet beyond
-// both limits has an alpha above 1e-4.
+// both limits has an alpha above 3e-5 (sheet.h), more than that of a mirror.
 bool may_be_smooth_sheet(const PrincipledDescription &p) {
-  constexpr float kRoughSheet = 0.1f, kBentSheet = 1.01f;
+  constexpr float kRoughSheet = 0.02f, kBentSheet = 1.01f;
   const bool smooth = p.roughness.varies() || p.ior.varies() || p.roughness.value.x < kRoughSheet || p.ior.value.x < kBentSheet;
   return may_be_positive(p.thin_wall) && may_be_positive(p.transmission) && smooth;
 }

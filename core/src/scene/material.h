@@ -41,6 +41,10 @@ struct Portal {
   bool moves = false;
   Parameter weight, position, direction;
 };
+// Returns the weight of a portal, 0 for one that is none.
+inline glm::vec3 counted_portal(const glm::vec3 &weight) {
+  return weight.x + weight.y + weight.z >= 3.0f * kLeastPortal ? weight : glm::vec3(0.0f);
+}
 
 struct ReadyLobe;
 

@@ -264,19 +264,24 @@ void PathIntegrator::pass_straight(uint32_t lane) {
     return;
   const Hit &hit = surface_.hit(lane);
   const Ray &ray = surface_.ray(lane);
-  film_.pass_on(path, hit.t);
   Scattering from = queue_.from[path_[lane]];
   from.passed += surface_.distance(lane);
   Ray next = ray_from(surface_.surface(lane), ray.d, ray.tmax - hit.t);
-  if (has_portal(lane)) {
+  const bool portal_here = has_portal(lane);
+  if (portal_here && !(ends_ >> lane & 1)) {
     if (const Portal *portal = choose_portal(lane, path))
       enter_portal(lane, *portal, next);
-    // Shadow rays end at portals, so that no light sample competes with the ray.
+    // Cycles weighs no light sample against a ray beyond a portal.
     from = {next.o, glm::vec3(0.0f), true, 0.0, 0.0};
     path.story.pass_portal();
   } else {
-    path.beta *= surface_.transmittance(lane) / surface_.lobes().pass[lane];
+    // A path after its last bounce enters no portal.
+    const glm::vec3 weight = portal_here ? straight_weight(lane) : surface_.transmittance(lane);
+    if (portal_here && weight == glm::vec3(0.0f))
+      return;
+    path.beta *= weight / surface_.lobes().pass[lane];
   }
+  film_.pass_on(path, hit.t);
   path.length += surface_.distance(lane);
   path.count_crossings(1, settings_.transparent_bounces);
   next_.paths.push_back(path);
@@ -285,9 +290,26 @@ void PathIntegrator::pass_straight(uint32_t lane) {
   next_.rays.back().kinds = path.kinds;
 }
 
+namespace {
+
+// Reads the parameters of a lane.
+auto reader_of(const SurfaceStage &surface, uint32_t lane) {
+  const auto value = [&surface, lane](const Parameter &parameter) { return surface.value(parameter, lane); };
+  return ParameterReader<float, decltype(value)>{value};
+}
+
+} // namespace
+
 glm::vec3 PathIntegrator::portal_weight(uint32_t lane, const Portal &portal) const {
-  const glm::vec3 weight = glm::max(surface_.value(portal.weight, lane), 0.0f);
-  return mean(weight) >= kLeastPortal ? weight : glm::vec3(0.0f);
+  return counted_portal(reader_of(surface_, lane).color(portal.weight));
+}
+
+// Returns the share of light that passes a surface beside its portals.
+glm::vec3 PathIntegrator::straight_weight(uint32_t lane) const {
+  glm::vec3 straight = surface_.transmittance(lane);
+  for (const Portal &portal : surface_.material(lane).portals)
+    straight -= portal_weight(lane, portal);
+  return glm::max(straight, 0.0f);
 }
 
 bool PathIntegrator::has_portal(uint32_t lane) const {
@@ -295,13 +317,10 @@ bool PathIntegrator::has_portal(uint32_t lane) const {
                              [&](const Portal &portal) { return portal_weight(lane, portal) != glm::vec3(0.0f); });
 }
 
-// Chooses among the portals of a surface and the way straight on, for which it returns null, and weights the path.
+// Chooses among the portals of a surface and the way straight on, and weights the path; null is the way straight on.
 const Portal *PathIntegrator::choose_portal(uint32_t lane, Path &path) const {
   const std::vector<Portal> &portals = surface_.material(lane).portals;
-  glm::vec3 straight = surface_.transmittance(lane);
-  for (const Portal &portal : portals)
-    straight -= portal_weight(lane, portal);
-  straight = glm::max(straight, 0.0f);
+  const glm::vec3 straight = straight_weight(lane);
   float all = mean(straight);
   for (const Portal &portal : portals)
     all += mean(portal_weight(lane, portal));
@@ -325,11 +344,11 @@ const Portal *PathIntegrator::choose_portal(uint32_t lane, Path &path) const {
 // Sends a ray on from where the portal leads to.
 void PathIntegrator::enter_portal(uint32_t lane, const Portal &portal, Ray &ray) const {
   constexpr double kPlace2 = 1e-9; // squared distance in the user's units within which Cycles takes places as one
-  const glm::dvec3 d(surface_.value(portal.direction, lane));
-  const glm::dvec3 way = d != glm::dvec3(0.0) ? glm::normalize(d) : surface_.ray(lane).d;
+  const auto read = reader_of(surface_, lane);
+  const glm::dvec3 d(read.direction(portal.direction));
+  const glm::dvec3 way = d != glm::dvec3(0.0) ? d : surface_.ray(lane).d;
   const glm::dvec3 p = get(surface_.surfaces().p, lane);
-  const glm::dvec3 to =
-      portal.moves ? scene_.normalisation.to_normalised(glm::dvec3(surface_.value(portal.position, lane))) : p;
+  const glm::dvec3 to = portal.moves ? scene_.normalisation.to_normalised(glm::dvec3(read.vector(portal.position))) : p;
   const glm::dvec3 moved = (to - p) / scene_.normalisation.scale;
   ray = ray_from(surface_.surface(lane), way, std::numeric_limits<double>::infinity());
   if (glm::dot(moved, moved) <= kPlace2)

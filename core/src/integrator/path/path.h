@@ -68,6 +68,7 @@ private:
   void look_around(uint32_t lane);
   void pass_straight(uint32_t lane);
   glm::vec3 portal_weight(uint32_t lane, const Portal &portal) const;
+  glm::vec3 straight_weight(uint32_t lane) const;
   bool has_portal(uint32_t lane) const;
   const Portal *choose_portal(uint32_t lane, Path &path) const;
   void enter_portal(uint32_t lane, const Portal &portal, Ray &ray) const;

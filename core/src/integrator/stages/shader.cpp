@@ -58,7 +58,7 @@ glm::vec3 Shader::transmittance_by_lobes(const Ray &ray, const Hit &hit, const M
   shade(surface, {.wo = glm::vec3(-glm::normalize(ray.d)), .path = path}, shaded_, false);
   glm::vec3 straight = shaded_.transmittance;
   for (const Portal &portal : material.portals)
-    straight -= glm::max(nodes_.value(portal.weight), 0.0f);
+    straight -= counted_portal(glm::max(nodes_.value(portal.weight), 0.0f));
   return material.portals.empty() || mean(straight) >= kLeastPortal ? shaded_.transmittance : glm::vec3(0.0f);
 }
 
