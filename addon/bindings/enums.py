@@ -6,6 +6,7 @@ Generated from core/include/lancer.h by `make bindings`; changes here are lost.
 from enum import IntEnum, IntFlag
 
 ABI_VERSION = 11
+MOST_NODE_RAYS = 128
 MOST_NODES = 4096
 DEEPEST_RECURSION = 16
 SKY_WIDTH = 512
@@ -163,6 +164,9 @@ class NodeKind(IntEnum):
     VECTOR_TRANSFORM = 37
     IES = 38
     SKY = 39
+    OCCLUSION = 40
+    BEVEL = 41
+    RAYCAST = 42
 
 
 class SkyModel(IntEnum):

@@ -16,14 +16,14 @@ import bpy
 from ..bindings.enums import VectorOperation
 from ..bindings.shading import NodeRef
 from ..messages.severity import Severity
-from . import colors, coordinates, curves, ies, maths, normals, patterns, places, procedural, skies, spectrum, textures
+from . import colors, coordinates, curves, ies, looking, maths, normals, patterns, places, procedural, skies, spectrum, textures
 from .arithmetic import THIRDS, triple
 from .node_builder import UNKNOWN, NodeBuilder, in_three
 from .resolved import ShaderTree
 from .sockets import find
 from .walk import Site, Walker
 
-_MODULES = (maths, colors, curves, coordinates, normals, textures, procedural, patterns, places, spectrum, ies, skies)
+_MODULES = (maths, colors, curves, coordinates, normals, textures, procedural, patterns, places, spectrum, ies, skies, looking)
 _READERS = {kind: reader for module in _MODULES for kind, reader in module.READERS.items()}
 _SCALARS = {"VALUE", "INT", "BOOLEAN"}
 _VECTORS = {"VECTOR", "ROTATION"}

@@ -87,11 +87,6 @@ def _against_view(graph, site):
     return graph.normal if normal is None else None if is_constant(normal, 0.0) else normal
 
 
-def _bevel(graph, site, output):
-    graph.tell(site, "Bevel is not supported, the normal is kept")
-    return _as_value(graph, graph.linked(site, ("Normal",), graph.normal))
-
-
 def _displacement(graph, site, output):
     values = (graph.value(site, name) for name in ("Height", "Midlevel", "Scale"))
     normal = graph.linked(site, ("Normal",), _ORIGIN)
@@ -159,7 +154,6 @@ def _stretch(graph):
 
 
 READERS = {
-    "BEVEL": _bevel,
     "BUMP": _bump,
     "DISPLACEMENT": _displacement,
     "FRESNEL": _fresnel,

@@ -35,6 +35,7 @@ extern "C" {
 #define LANCER_ABI_VERSION 11u
 
 /* Limits: nodes of a material or world; recursion of CLASSIC, in which glass doubles the rays with every depth. */
+#define LANCER_MOST_NODE_RAYS 128u /* of an OCCLUSION or a BEVEL */
 #define LANCER_MOST_NODES 4096u
 #define LANCER_DEEPEST_RECURSION 16u
 
@@ -305,7 +306,16 @@ enum lancer_node_kind {
    *     [3 ... 5]: RGB of the lower and the upper rim of the sun's disc, [6 ... 8]: direction of the sun, [9]: its diameter in
    *     radians, 0 = no disc, [10]: the elevation below which the ground hides the disc */
   LANCER_NODE_SKY = 39,
-  LANCER_NODE_COUNT = 40
+  /* Nodes that look around the surface that a path of PATH meets; in shadows, lights, the world and displacement they meet
+   * nothing. Lengths are those of the user's world.
+   * inputs: distance, normal, the constant 0 = the shading normal. option: number of rays; flags 1: of the inside, 2: only its
+   * own object occludes. Returns the open share */
+  LANCER_NODE_OCCLUSION = 40,
+  LANCER_NODE_BEVEL = 41, /* inputs: radius, normal as OCCLUSION. option: number of rays. Returns a normal */
+  /* inputs: position; direction; length, in those of the direction. option 0: 1 if there is a hit, 1 if of its own object, the
+   * distance; 1: position, 2: normal of the hit, else 0, 0, 0. flag 1: its own object alone */
+  LANCER_NODE_RAYCAST = 42,
+  LANCER_NODE_COUNT = 43
 };
 /* Models of the sky. NISHITA: the single scattering of Blender before 5.0. */
 enum lancer_sky_model {

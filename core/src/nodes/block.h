@@ -14,6 +14,7 @@ struct Camera;
 struct Geometry;
 struct Image;
 struct Normalisation;
+class NodeRays;
 
 // Scene data that any node may read.
 struct NodeScene {
@@ -21,6 +22,15 @@ struct NodeScene {
   const std::vector<Image> *images = nullptr;
   const Normalisation *normalisation = nullptr; // null: the user's world is the normalised one
   const Camera *camera = nullptr;               // null: CAMERA and WINDOW use the world's frame
+};
+
+// From where nodes of a block that look around send rays (looking.h). Bits of lanes: used, and sharp: rays that have arrived by
+// no wide lobe, on which Cycles bevels.
+struct alignas(64) LookingLanes {
+  NodeRays *rays = nullptr;
+  uint32_t used = 0, sharp = 0;
+  alignas(64) double offset[kBlockLanes]; // Surface::offset
+  uint32_t pixel[kBlockLanes], sample[kBlockLanes], dimension[kBlockLanes]; // of random numbers
 };
 
 // The inputs of nodes in lanes. The caller sets the used lanes of every array that the kind of place needs; other lanes are not
@@ -31,6 +41,7 @@ struct NodeScene {
 // (surface is false), the caller sets p (the direction), ns = ng = wo = -p, and eye.
 struct alignas(64) NodeBlock {
   NodeScene scene;
+  const LookingLanes *looking = nullptr; // null: nodes that look around meet nothing
   bool surface = true;
   uint32_t used = 0, backfacing = 0; // bits of lanes
 

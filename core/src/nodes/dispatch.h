@@ -5,6 +5,7 @@
 #include "nodes/bump_node.h"
 #include "nodes/color_nodes.h"
 #include "nodes/image_nodes.h"
+#include "nodes/looking_nodes.h"
 #include "nodes/place_nodes.h"
 #include "nodes/sky.h"
 #include "nodes/texture_nodes.h"
@@ -14,6 +15,8 @@
 namespace lancer {
 
 namespace {
+
+inline uint32_t number_of(const Program &program, const Node &node) { return uint32_t(&node - program.nodes.data()); }
 
 // Returns the value of one node at a site.
 template <class F> Value<F> node_value(const Program &program, const Inputs<F> &in, const Site<F> &site) {
@@ -95,6 +98,12 @@ template <class F> Value<F> node_value(const Program &program, const Inputs<F> &
     return curves_node(in, site);
   case NodeKind::Sky:
     return sky_node(in, site);
+  case NodeKind::Occlusion:
+    return occlusion_node(in, site, number_of(program, node));
+  case NodeKind::Bevel:
+    return bevel_node(in, site, number_of(program, node));
+  case NodeKind::Raycast:
+    return raycast_node(in, site);
   case NodeKind::ObjectInfo:
     return object_info_node(node, site);
   case NodeKind::LightPath:
@@ -126,6 +135,8 @@ template <class F> Site<F> site_of(const NodeBlock &block, int first) {
   };
   Site<F> site;
   site.scene = block.scene;
+  site.looking = block.looking;
+  site.first = first;
   site.surface = block.surface;
   const int stand_in = std::countr_zero(block.used >> first);
   for (int i = 0; i < width; ++i) {

@@ -53,6 +53,9 @@ struct View {
   glm::vec3 wo{0, 0, 1};   // unit, world, away from the surface
   float footprint = 0.0f;  // radius of a pixel's footprint there, normalised units
   LightPath<float> path{}; // of the ray that has hit the surface; for emission without a ray, the default
+  // For nodes that look around: the address of random numbers, and whether the ray has passed no wide lobe.
+  uint32_t pixel = 0, sample = 0, dimension = 0;
+  bool sharp = false;
 };
 
 // One object per thread: it keeps the values of the last run.

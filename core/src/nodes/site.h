@@ -67,6 +67,8 @@ template <class F> struct Site {
   using M = MaskOf<F>;
 
   NodeScene scene;
+  const LookingLanes *looking = nullptr; // as in NodeBlock
+  int first = 0;                         // the first of its lanes
   bool surface = false;        // else a direction of the world
   bool placed = false;         // lanes have instances
   bool together = false;       // and all lanes have the same one

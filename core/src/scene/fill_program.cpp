@@ -86,6 +86,11 @@ Shape shape_of(const lancer_node &node) {
     return {1, 0, false};
   case LANCER_NODE_IES:
     return {2, 0, false};
+  case LANCER_NODE_OCCLUSION:
+  case LANCER_NODE_BEVEL:
+    return {2, LANCER_MOST_NODE_RAYS + 1, false};
+  case LANCER_NODE_RAYCAST:
+    return {3, 3, false};
   case LANCER_NODE_VECTOR_TRANSFORM:
     return {1, 3, false};
   case LANCER_NODE_SKY:
@@ -108,7 +113,10 @@ uint32_t flags_of(uint32_t kind) {
   case LANCER_NODE_MAGIC:
   case LANCER_NODE_RADIAL_TILING:
   case LANCER_NODE_WIREFRAME:
+  case LANCER_NODE_RAYCAST:
     return 1;
+  case LANCER_NODE_OCCLUSION:
+    return 1 | 2;
   case LANCER_NODE_ATTRIBUTE:
     return LANCER_ATTRIBUTE_OPAQUE | LANCER_ATTRIBUTE_FIRST | LANCER_ATTRIBUTE_STILL;
   case LANCER_NODE_TANGENT:
@@ -318,7 +326,8 @@ Program read_program(Description &description, const std::string &owner, const l
     // Pixels have a size for camera rays alone.
     const Node &node = program.nodes[i];
     program.asks_light_path |= node.kind == LANCER_NODE_LIGHT_PATH || (node.kind == LANCER_NODE_WIREFRAME && node.flags & 1);
-    if (program.nodes[i].kind != LANCER_NODE_BUMP)
+    program.looks_around |= looks_around(node.kind);
+    if (node.kind != LANCER_NODE_BUMP)
       continue;
     program.nodes[i].heights = uint32_t(program.heights.size());
     program.heights.push_back(height_schedule(program, i));

@@ -41,6 +41,7 @@ struct Program {
   std::vector<Node> nodes;
   std::vector<Schedule> heights; // of each BUMP: the nodes among [first, this) that its height depends on
   bool asks_light_path = false;  // whether a node reads the light path
+  bool looks_around = false;     // whether a node sends rays
 
   // Returns the nodes that the parameters depend on, directly or indirectly, in order of evaluation, without the height nodes
   // of a BUMP.
@@ -55,5 +56,7 @@ inline glm::vec3 value_of(const Parameter &parameter, std::span<const glm::vec4>
 
 // Returns whether a kind of node depends on its inputs alone, not on a surface, a ray or an image.
 bool asks_no_place(uint32_t kind);
+// Returns whether a kind of node sends rays.
+bool looks_around(uint32_t kind);
 
 } // namespace lancer

@@ -8,6 +8,13 @@
 
 namespace lancer {
 
+namespace {
+
+// Density of directions below which a lobe is so wide that Cycles bevels nothing behind it.
+constexpr float kSharpDensity = 8.0f;
+
+} // namespace
+
 void PathIntegrator::run(std::span<const SampleAddress> addresses, std::span<SampleResult> results,
                          std::vector<PathVertex> *trace) {
   // Start one path per sample.
@@ -141,8 +148,13 @@ void PathIntegrator::shade_block() {
   surface_.ask_nodes([&](uint32_t lane) {
     const Path &path = path_of(lane);
     const double unit = surface_.surfaces().length[lane], t = surface_.hit(lane).t;
-    return surface_.view(lane, path.length + t * unit,
-                         path.light_path((t - surface_.ray(lane).tmin) * unit / scene_.normalisation.scale));
+    View view = surface_.view(lane, path.length + t * unit,
+                              path.light_path((t - surface_.ray(lane).tmin) * unit / scene_.normalisation.scale));
+    view.pixel = path.sampler.pixel();
+    view.sample = path.sampler.sample();
+    view.dimension = path.nodes_dimension();
+    view.sharp = path.sharp;
+    return view;
   });
   cut_holdouts();
   surface_.build_lobes();
@@ -373,6 +385,7 @@ void PathIntegrator::scatter(uint32_t lane, uint32_t branch) {
     next.split_off(branch, sharers, leader_[lane]);
   next.scatter(beta, scatter_.kind(lane), block.diffuse >> lane & 1, block.transmitted >> lane & 1, block.pdf[lane] == 0.0);
   next.in_view = path.in_view && film_.stays_in_view(block, lane);
+  next.sharp = path.sharp && (block.pdf[lane] == 0.0 || block.pdf_scattered[lane] >= kSharpDensity);
   next.length += surface_.distance(lane);
   film_.set_shares(path, next, block.share, lane);
   next_.from.push_back({get(surface_.surfaces().p, lane), get(surface_.lobes().ns, lane),

@@ -7,6 +7,7 @@
 #include "integrator/stages/hit.h"
 #include "integrator/stages/light.h"
 #include "integrator/stages/met_lights.h"
+#include "integrator/stages/node_rays.h"
 #include "integrator/stages/occlusion.h"
 #include "integrator/stages/scatter.h"
 #include "integrator/stages/shading_queues.h"
@@ -15,6 +16,7 @@
 #include "integrator/stages/texture_prefetch.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace lancer {
 
@@ -24,6 +26,8 @@ public:
       : scene_(scene), settings_(settings), camera_(camera, settings), film_(scene, camera, settings), hit_(scene, camera),
         met_(scene, camera), queues_(scene), textures_(scene), surface_(scene, camera, settings), light_(scene, &camera),
         occlusion_(scene, settings), shadow_(scene, camera, settings), last_bounces_(settings.max_bounces) {
+    if (std::ranges::any_of(scene.materials, [](const Material &material) { return material.program.looks_around; }))
+      surface_.look_by(node_rays_.emplace(scene));
     PathIntegrator::set_splits(settings.splits);
   }
 
@@ -85,6 +89,7 @@ private:
   MetLights met_;
   ShadingQueues queues_;
   TexturePrefetch textures_;
+  std::optional<SceneNodeRays> node_rays_; // if a node looks around
   SurfaceStage surface_;
   NumberStage numbers_;
   LightStage light_;

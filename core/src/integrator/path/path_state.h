@@ -24,6 +24,7 @@ struct Path {
   uint32_t passed_through = 0;      // transparent surfaces passed in all
   PathStory story;                  // for nodes that read it
   bool in_view = true; // since the camera, the path has passed straight on or through clear glass alone; set by PATH
+  bool sharp = true;   // no ray since the camera was sampled by a wide lobe
   bool last = false;   // the path ends at the next surface
   double length = 0.0; // of the whole path, normalised units; set by PATH
 
@@ -64,6 +65,8 @@ struct Path {
     const uint32_t dimension = kDimensionOpacity + 2 * (scatterings * kMaxCrossings + crossings);
     return std::min(sampler.get1(dimension) / std::min(pass, 1.0f), 1.0f - 0x1p-24f);
   }
+  // Returns the dimension of the numbers of nodes' rays at the path's current surface.
+  uint32_t nodes_dimension() const { return kDimensionNodes + 2 * (scatterings * kMaxCrossings + crossings); }
   // Returns the first dimension of the path's current vertex.
   uint32_t vertex_dimension() const { return kDimensionVertex + scatterings * kVertexStride; }
   // Whether the path belongs to the first sample of its pixel. paths: number of paths after a split.

@@ -146,6 +146,19 @@ void SurfaceStage::place_nodes(const Material &material, std::span<const View> v
     if (material.program.asks_light_path)
       put(views[lane].path, nodes_, lane);
   }
+  const bool looks = material.program.looks_around && looking_.rays;
+  nodes_.looking = looks ? &looking_ : nullptr;
+  if (!looks)
+    return;
+  looking_.used = nodes_.used;
+  looking_.sharp = 0;
+  for (uint32_t lane = 0; lane < count_; ++lane) {
+    looking_.offset[lane] = at.offset[lane];
+    looking_.pixel[lane] = views[lane].pixel;
+    looking_.sample[lane] = views[lane].sample;
+    looking_.dimension[lane] = views[lane].dimension;
+    looking_.sharp |= uint32_t{views[lane].sharp} << lane;
+  }
 }
 
 SurfaceStage::Holes SurfaceStage::cut_holdouts(uint32_t seen) {

@@ -99,6 +99,8 @@ public:
   void move(uint32_t lane, const Hit &hit);
   // Turns a lane to be seen along a view direction of any length.
   void view_along(uint32_t lane, const glm::dvec3 &view) { put(view, hits_.d, lane); }
+  // Lets nodes look around by these rays, which must outlive the stage.
+  void look_by(NodeRays &rays) { looking_.rays = &rays; }
   // Computes the surfaces of all lanes.
   void find();
   // Evaluates the nodes of the material, if it has any. view_of(lane): returns the View of a lane.
@@ -183,6 +185,7 @@ private:
   MeanBlock means_{};
   glm::vec3 emission_[kBlockLanes], transmittance_[kBlockLanes]; // of the material
   NodeBlock nodes_{};
+  LookingLanes looking_{};
   std::vector<NodeLanes> values_;
   std::vector<Bytes> storage_;
 };

@@ -1,0 +1,105 @@
+#include "nodes/looking.h"
+
+#include "bsdf/lobe.h"
+#include "sampling/elementary.h"
+#include "sampling/warp.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lancer {
+
+namespace {
+
+// The random numbers of the rays of one node at one place.
+class LookingNumbers {
+public:
+  LookingNumbers(const LookingPlace &at, uint32_t count, uint32_t node)
+      : pixel_(hash_combine(at.pixel, node)), first_(at.sample * count), dimension_(at.dimension) {}
+
+  // Returns the numbers of a ray: together, the rays of all samples are one sequence.
+  glm::vec2 of(uint32_t ray) const { return Sampler(pixel_, first_ + ray).get2(dimension_); }
+
+private:
+  uint32_t pixel_, first_, dimension_;
+};
+
+} // namespace
+
+float open_share(NodeRays &rays, const LookingPlace &at, const glm::vec3 &n, double distance, uint32_t count, bool alone,
+                 uint32_t node) {
+  const LookingNumbers numbers(at, count, node);
+  const Frame frame(n);
+  uint32_t open = 0;
+  for (uint32_t i = 0; i < count; ++i) {
+    Ray ray = ray_from(at.surface, glm::dvec3(frame.to_world(warp_cosine_hemisphere(numbers.of(i)))), distance);
+    ray.kinds = RayKind::Shadow;
+    open += uint32_t(!rays.occluded(ray, alone ? at.surface.instance : kNone));
+  }
+  return float(open) / float(count);
+}
+
+namespace {
+
+// The weight of a point at distance r, up to a constant factor.
+double cubic_weight(double radius, double r) {
+  const double rest = std::max(radius - r, 0.0);
+  return rest * rest * rest;
+}
+
+// Returns the distance, in units of the radius, within which a share u of the weight over a disk lies: the root x of
+// 10 x^2 - 20 x^3 + 15 x^4 - 4 x^5 = u.
+double cubic_distance(double u) {
+  // Newton's method, kept within the interval in which the root lies.
+  double low = 0.0, high = 1.0, x = 0.25;
+  for (int i = 0; i < 32; ++i) {
+    const double f = x * x * (10.0 + x * (-20.0 + x * (15.0 - 4.0 * x))) - u, rest = 1.0 - x;
+    (f < 0.0 ? low : high) = x;
+    const double next = x - f / std::max(20.0 * x * rest * rest * rest, 1e-300);
+    const double taken = next > low && next < high ? next : 0.5 * (low + high);
+    if (std::abs(taken - x) < 1e-12)
+      break;
+    x = taken;
+  }
+  return x;
+}
+
+} // namespace
+
+glm::vec3 bevelled_normal(NodeRays &rays, const LookingPlace &at, double radius, uint32_t count, uint32_t node) {
+  const LookingNumbers numbers(at, count, node);
+  const Frame frame(at.surface.ng);
+  const glm::dvec3 axes[3] = {glm::dvec3(frame.n), glm::dvec3(frame.t), glm::dvec3(frame.b)};
+  constexpr double share[3] = {0.5, 0.25, 0.25};
+  glm::dvec3 sum(0.0);
+  for (uint32_t i = 0; i < count; ++i) {
+    // Choose an axis, and a point of the disk across the axis.
+    glm::vec2 u = numbers.of(i);
+    const int axis = u.x < 0.5f ? 0 : u.x < 0.75f ? 1 : 2;
+    u.x = axis == 0 ? 2.0f * u.x : 4.0f * (u.x - (axis == 1 ? 0.5f : 0.75f));
+    const double r = radius * cubic_distance(double(u.y)), height = std::sqrt(std::max(radius * radius - r * r, 0.0));
+    const SinCos<float> turn = sin_cos_turn(u.x);
+    const glm::dvec3 &up = axes[axis], &across = axes[(axis + 1) % 3], &along = axes[(axis + 2) % 3];
+    Ray ray;
+    ray.o = at.surface.p + height * up + r * (double(turn.cos) * across + double(turn.sin) * along);
+    ray.d = -up;
+    ray.tmax = 2.0 * height;
+    // Weigh each point of the object on the way by the densities of all axes.
+    for (const Hit &hit : rays.all(ray, at.surface.instance)) {
+      const Surface met = rays.surface(ray, hit);
+      double squares = 0.0;
+      for (int k = 0; k < 3; ++k) {
+        const double density = share[k] * glm::dot(axes[k], glm::dvec3(met.ng));
+        squares += density * density;
+      }
+      const double density = share[axis] * std::abs(glm::dot(up, glm::dvec3(met.ng)));
+      const double drawn = cubic_weight(radius, r), real = cubic_weight(radius, glm::length(met.p - at.surface.p));
+      if (squares > 0.0 && drawn > 0.0)
+        sum += density / squares * (real / drawn) * glm::dvec3(met.ns);
+    }
+  }
+  const double length = glm::length(sum);
+  return length > 0.0 ? at.facing(glm::vec3(sum / length)) : at.facing(at.surface.ns);
+}
+
+} // namespace lancer

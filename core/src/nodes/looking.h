@@ -1,0 +1,44 @@
+// Nodes that look around a place on a surface by rays: Ambient Occlusion, Bevel, Raycast. One place at a time, for every lane
+// width the same code: a ray costs far more than lanes would save.
+#pragma once
+
+#include "sampling/sobol.h"
+#include "scene/ray.h"
+#include "scene/surface.h"
+
+#include <span>
+
+namespace lancer {
+
+// The hits of rays that nodes send. One object per thread. instance: the only one whose hits count; kNone: all count.
+class NodeRays {
+public:
+  virtual ~NodeRays() = default;
+  virtual bool occluded(const Ray &ray, uint32_t instance) = 0;
+  virtual Hit closest(const Ray &ray, uint32_t instance) = 0;
+  // Returns the hits with an instance, each primitive once, valid until the next call.
+  virtual std::span<const Hit> all(const Ray &ray, uint32_t instance) = 0;
+  virtual Surface surface(const Ray &ray, const Hit &hit) const = 0;
+};
+
+// Where a node looks around.
+struct LookingPlace {
+  Surface surface; // normals outwards
+  bool backfacing = false;
+  // The address of random numbers: pixel and sample of the sampler, and the dimension of the vertex.
+  uint32_t pixel = 0, sample = 0, dimension = 0;
+
+  glm::vec3 facing(const glm::vec3 &n) const { return backfacing ? -n : n; }
+};
+
+// Returns the share of rays that meet nothing within a distance (normalised units), cosine-distributed around n. count: of rays;
+// node: number of the node, whose random numbers are its own.
+float open_share(NodeRays &rays, const LookingPlace &at, const glm::vec3 &n, double distance, uint32_t count, bool alone,
+                 uint32_t node);
+
+// Returns the mean normal of the object's own surface within a radius (normalised units), on the side of the place's own: the
+// normal of an edge that is rounded. Weights fall with the cube of the distance to the radius; points are found by rays along
+// three axes (King et al., BSSRDF Importance Sampling, 2013).
+glm::vec3 bevelled_normal(NodeRays &rays, const LookingPlace &at, double radius, uint32_t count, uint32_t node);
+
+} // namespace lancer
