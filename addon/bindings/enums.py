@@ -463,6 +463,16 @@ class LobeKind(IntEnum):
     TOON = 15
     HAIR = 16
     HAIR_FIBRE = 17
+    SUBSURFACE = 18
+
+
+class SubsurfaceMethod(IntEnum):
+    """RANDOM_WALK_LEGACY."""
+
+    BURLEY = 0
+    RANDOM_WALK_LEGACY = 1
+    SKIN = 2
+    RANDOM_WALK = 3
 
 
 class Distribution(IntEnum):

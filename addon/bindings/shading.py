@@ -95,6 +95,7 @@ class Principled(Parameters, struct=structs.Principled):
     rules: int = Rules.BLENDER_45
     distribution: int = Distribution.MULTI_GGX
     option: int = 1
+    subsurface_option: int = 0
 
 
 @register

@@ -107,7 +107,7 @@ class Principled(Structure):
         ("rules", c_uint32),
         ("distribution", c_uint32),
         ("option", c_uint32),
-        ("reserved", c_uint32),
+        ("subsurface_option", c_uint32),
         ("base_color", Parameter),
         ("metallic", Parameter),
         ("roughness", Parameter),
@@ -133,6 +133,11 @@ class Principled(Structure):
         ("thin_wall", Parameter),
         ("wall_scattering", Parameter),
         ("wall_forward", Parameter),
+        ("subsurface", Parameter),
+        ("subsurface_radius", Parameter),
+        ("subsurface_color", Parameter),
+        ("subsurface_ior", Parameter),
+        ("subsurface_anisotropy", Parameter),
     ]
 
 
@@ -512,6 +517,11 @@ PARAMETERS = {
         "thin_wall": ("share", 0.0),
         "wall_scattering": ("share", 0.0),
         "wall_forward": ("share", 0.5),
+        "subsurface": ("share", 0.0),
+        "subsurface_radius": ("color", (0.0, 0.0, 0.0)),
+        "subsurface_color": ("color", (0.8, 0.8, 0.8)),
+        "subsurface_ior": ("index", 1.4),
+        "subsurface_anisotropy": ("turns", 0.0),
     },
     Lobe: {
         "weight": ("color", (1.0, 1.0, 1.0)),

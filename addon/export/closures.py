@@ -11,6 +11,7 @@ from .films import read_film
 from .hair import read_hair, read_principled_hair
 from .principled import read_principled
 from .sockets import DIFFUSE_OPTION, SMALLEST_IOR
+from .subsurface import read_subsurface
 
 _NONE = (0.0, 0.0, 0.0)  # a direction: straight on
 
@@ -187,6 +188,7 @@ CLOSURES = {
     "GROUP": read_group,
     "HOLDOUT": _holdout,
     "PRINCIPLED_VOLUME": _volume,
+    "SUBSURFACE_SCATTERING": read_subsurface,
     "VOLUME_ABSORPTION": _volume,
     "VOLUME_COEFFICIENTS": _volume,
     "VOLUME_SCATTER": _volume,

@@ -30,13 +30,21 @@ _NAMES = {
     LobeKind.TOON: "Toon",
     LobeKind.HAIR: "Hair",
     LobeKind.HAIR_FIBRE: "Hair absorption",
+    LobeKind.SUBSURFACE: "Subsurface Kd",
 }
 _ROUGH = {
     LobeKind.DIFFUSE, LobeKind.GLOSSY, LobeKind.GLASS, LobeKind.REFRACTION, LobeKind.CONDUCTOR, LobeKind.SHEEN, LobeKind.HAIR,
-    LobeKind.HAIR_FIBRE,
+    LobeKind.HAIR_FIBRE, LobeKind.SUBSURFACE,
 }  # fmt: skip
 _FACETS = {LobeKind.BECKMANN, LobeKind.GLOSSY, LobeKind.GLASS, LobeKind.REFRACTION, LobeKind.CONDUCTOR}
-_REFRACTIVE = {LobeKind.BECKMANN, LobeKind.DIELECTRIC, LobeKind.GLASS, LobeKind.REFRACTION, LobeKind.HAIR_FIBRE}
+_REFRACTIVE = {
+    LobeKind.BECKMANN,
+    LobeKind.DIELECTRIC,
+    LobeKind.GLASS,
+    LobeKind.REFRACTION,
+    LobeKind.HAIR_FIBRE,
+    LobeKind.SUBSURFACE,
+}
 # Inputs of the Principled BSDF that are shown if they are not 0, with their names.
 _PRINCIPLED = (
     ("metallic", "metallic"),
@@ -47,6 +55,7 @@ _PRINCIPLED = (
     ("anisotropic", "anisotropic"),
     ("film_thickness", "thin film"),
     ("thin_wall", "thin wall"),
+    ("subsurface", "subsurface"),
 )
 
 
@@ -117,6 +126,8 @@ def _lobe(lobe):
         text += f", IOR {_told(lobe.ior)}"
     if lobe.kind == LobeKind.TOON:
         text += f", size {_told(lobe.roughness)}, smooth {_told(lobe.roughness_across)}"
+    if lobe.kind == LobeKind.SUBSURFACE:
+        text += f", radius {_told(lobe.edge)}"
     if not is_constant(lobe.film_thickness, 0.0):
         text += f", thin film {_told(lobe.film_thickness)}"
     if not is_constant(lobe.normal, 0.0):

@@ -10,7 +10,8 @@ from .arithmetic import is_constant
 from .distributions import read_distribution
 from .films import read_film
 from .old_ranges import tell_range
-from .sockets import DIFFUSE_OPTION, PRINCIPLED, RULES, SMALLEST_IOR, find
+from .sockets import DIFFUSE_OPTION, PRINCIPLED, RULES, SMALLEST_IOR
+from .subsurface import read_below
 
 _WHITE = (1.0, 1.0, 1.0)
 # Layers whose other inputs are read only if the layer's weight is not 0.
@@ -38,7 +39,7 @@ def read_principled(surface, site, weight):
     thin_wall = values["thin_wall"] = number("thin_wall", 0.0)
     for name, (kind, default) in PARAMETERS[Principled].items():
         layer, _, part = name.partition("_")
-        if name in _APART or (part and layer in _LAYERS and is_constant(values[layer], 0.0)):
+        if name in _APART or name.startswith("subsurface") or (part and layer in _LAYERS and is_constant(values[layer], 0.0)):
             continue
         if name in ("specular_tint", "sheen_tint"):
             values[name] = _tint(surface, site, name)
@@ -56,7 +57,9 @@ def read_principled(surface, site, weight):
             values[name] = number(name, default)
         else:
             values[name] = number(name, default, SMALLEST_IOR)
-    values["base_color"] = _base_color(surface, site, values)
+    values["base_color"] = surface.color(site, PRINCIPLED["base_color"])
+    if isinstance(thin_wall, NodeRef) or is_constant(thin_wall, 0.0):
+        values.update(read_below(surface, site))
     if not is_constant(thin_wall, 0.0):
         values["wall_scattering"] = number("subsurface", 0.0, 0.0, 1.0)
         anisotropy = number("subsurface_anisotropy", 0.0)
@@ -90,22 +93,6 @@ def _tint(surface, site, name):
         return surface.color(site, PRINCIPLED[name], _WHITE)
     share = surface.graph.parameter(site, PRINCIPLED[name], 0.0, low=0.0, high=1.0)
     return share if isinstance(share, NodeRef) else (share, 0.0, 0.0)
-
-
-def _base_color(surface, site, values):
-    """Return the base colour; subsurface scattering, with a message, becomes diffuse reflection in its colour."""
-    graph = surface.graph
-    base = surface.color(site, PRINCIPLED["base_color"])
-    share = surface.share(site, PRINCIPLED["subsurface"])
-    wall = values["thin_wall"]
-    if is_constant(share, 0.0) or not (isinstance(wall, NodeRef) or is_constant(wall, 0.0)):
-        return base
-    name = find(site.node, PRINCIPLED["subsurface"]).name
-    graph.tell(site, f"input '{name}' is not supported, a diffuse surface is used", "feature:subsurface scattering")
-    diffuse_only = is_constant(values["metallic"], 0.0) and is_constant(values["transmission"], 0.0)
-    if RULES == Rules.BLENDER_3 and diffuse_only:
-        return graph.mix(share, base, surface.color(site, ("Subsurface Color",)))
-    return base
 
 
 def _emission(surface, site):

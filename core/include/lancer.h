@@ -612,6 +612,10 @@ LANCER_API lancer_status lancer_compute_sky(uint32_t model, double elevation, do
  *                around it, offset in radians
  *   HAIR_FIBRE   Chiang's Principled Hair BSDF along tangent, as on meshes: color is the absorption, roughness and
  *                roughness_across as in HAIR, edge[0] the roughness of the first reflection over roughness, offset in radians
+ *   SUBSURFACE   light enters, goes below the surface of its object, and leaves elsewhere: color is the albedo of the surface,
+ *                edge the radii of red, green and blue in world lengths, ior and roughness those of the facets that light
+ *                enters by, anisotropy the mean cosine of scattering. option: LANCER_SUBSURFACE_*, plus 4 where radii below a
+ *                quarter of a pixel are none (Blender 4.0 to 4.3). CLASSIC shows LAMBERT
  * film_thickness, in nanometres, and film_ior describe a film on GLASS and CONDUCTOR whose interference colours the reflected
  * light, in the primaries of Rec. 709; a film of at most 0.1 is none. */
 /* clang-format on */
@@ -634,7 +638,15 @@ enum lancer_lobe_kind {
   LANCER_TOON = 15,
   LANCER_HAIR = 16,
   LANCER_HAIR_FIBRE = 17,
-  LANCER_LOBE_KIND_COUNT = 18
+  LANCER_SUBSURFACE = 18,
+  LANCER_LOBE_KIND_COUNT = 19
+};
+/* RANDOM_WALK_LEGACY: Random Walk before Blender 5.2, in 3.x Random Walk (Fixed Radius); SKIN: in 3.x Random Walk. */
+enum lancer_subsurface_method {
+  LANCER_SUBSURFACE_BURLEY = 0,
+  LANCER_SUBSURFACE_RANDOM_WALK_LEGACY = 1,
+  LANCER_SUBSURFACE_SKIN = 2,
+  LANCER_SUBSURFACE_RANDOM_WALK = 3
 };
 enum lancer_distribution {
   LANCER_DISTRIBUTION_GGX = 0,
@@ -655,10 +667,10 @@ enum lancer_rules {
  * 0.08, specular_tint[0] and sheen_tint[0] mix in the base colour's hue, coat is four times the layer's weight;
  * transmission_roughness exists before 4.0 only. */
 typedef struct lancer_principled {
-  uint32_t rules;        /* LANCER_RULES_* */
-  uint32_t distribution; /* LANCER_DISTRIBUTION_GGX or LANCER_DISTRIBUTION_MULTI_GGX */
-  uint32_t option;       /* as in DIFFUSE, for diffuse_roughness */
-  uint32_t reserved;
+  uint32_t rules;                          /* LANCER_RULES_* */
+  uint32_t distribution;                   /* LANCER_DISTRIBUTION_GGX or LANCER_DISTRIBUTION_MULTI_GGX */
+  uint32_t option;                         /* as in DIFFUSE, for diffuse_roughness */
+  uint32_t subsurface_option;              /* as option of SUBSURFACE */
   lancer_parameter base_color;             /* [color 0.8] */
   lancer_parameter metallic;               /* [share 0] */
   lancer_parameter roughness;              /* [share 0.5] */
@@ -684,6 +696,11 @@ typedef struct lancer_principled {
   lancer_parameter thin_wall;              /* [share 0] from 5.2: above 0 the surface is a sheet with air on both sides */
   lancer_parameter wall_scattering;        /* [share 0] share of a sheet's diffuse light that also passes to the other side */
   lancer_parameter wall_forward;           /* [share 0.5] how much of that light passes */
+  lancer_parameter subsurface;             /* [share 0] share of the diffuse light that goes below the surface */
+  lancer_parameter subsurface_radius;      /* [color 0] of red, green and blue, in world lengths */
+  lancer_parameter subsurface_color;       /* [color 0.8] before 4.0 only */
+  lancer_parameter subsurface_ior;         /* [index 1.4] of SKIN, and before 4.0 */
+  lancer_parameter subsurface_anisotropy;  /* [turns 0] mean cosine of scattering */
 } lancer_principled;
 
 typedef struct lancer_lobe {
@@ -696,8 +713,8 @@ typedef struct lancer_lobe {
   lancer_parameter roughness;          /* [share 0.5] BECKMANN: alpha itself; others: the socket's value */
   lancer_parameter ior;                /* [index 1.5] relative to the outside, > 0, may be infinite */
   lancer_parameter shininess;          /* [amount 50] the exponent n of PHONG, BLINN_PHONG; k of MINNAERT */
-  lancer_parameter edge;               /* [color 1] CONDUCTOR, HAIR_FIBRE */
-  lancer_parameter anisotropy;         /* [signed 0] GLOSSY, CONDUCTOR */
+  lancer_parameter edge;               /* [color 1] CONDUCTOR, HAIR_FIBRE, SUBSURFACE */
+  lancer_parameter anisotropy;         /* [signed 0] GLOSSY, CONDUCTOR, SUBSURFACE */
   lancer_parameter rotation;           /* [turns 0] GLOSSY, CONDUCTOR */
   lancer_parameter normal;             /* [direction 0] none: the shading normal */
   lancer_parameter tangent;            /* [direction 0] none: any */

@@ -59,7 +59,7 @@ inline std::vector<Code> all_codes() {
   for (uint32_t number = 0; number < kLobeKinds; ++number)
     for (const Rules rules : kAllRules)
       for (const Facets facets : {Facets::Ggx, Facets::Beckmann, Facets::AshikhminShirley, Facets::MultiGgx})
-        for (const uint32_t option : {0u, 1u}) {
+        for (const uint32_t option : {0u, 1u, 2u, 3u, 6u}) {
           const LobeKind kind = static_cast<LobeKind>(number);
           const bool of_facets = kind == LobeKind::Glossy || kind == LobeKind::Glass || kind == LobeKind::Refraction ||
                                  kind == LobeKind::Conductor;
@@ -69,7 +69,8 @@ inline std::vector<Code> all_codes() {
                              (facets == Facets::MultiGgx && (of_facets || layered));
           const bool optional = layered || kind == LobeKind::Diffuse || kind == LobeKind::Conductor || kind == LobeKind::Toon ||
                                 kind == LobeKind::Hair;
-          if (there && (optional || option == 0))
+          const bool below = kind == LobeKind::Subsurface;
+          if (there && (below || option == 0 || (optional && option == 1)))
             all.push_back({kind, rules, facets, option});
         }
   return all;
@@ -130,6 +131,12 @@ inline Described described(Random &random, const Code &code, const glm::vec3 &ns
     in.wall_scattering = share(random);
     in.wall_forward = share(random);
   }
+  in.subsurface_option = (static_cast<uint32_t>(code.rules) + 2 * code.option) % 4;
+  in.subsurface = one_of(random, {0.0f, 1.0f}) * share(random);
+  in.subsurface_radius = color(random);
+  in.subsurface_color = color(random);
+  in.subsurface_ior = index(random);
+  in.subsurface_anisotropy = 2.0f * random.uniform() - 1.0f;
   return d;
 }
 

@@ -14,6 +14,7 @@ SUBJECTS = (
     "materials_closures",
     "materials_portals",
     "materials_hair",
+    "materials_subsurface",
     "materials_mixes",
     "furnaces",
     "furnaces_principled",

@@ -26,6 +26,11 @@ template <class F> struct BsdfSample {
   WordOf<F> component{0u};                   // Component of the sampled lobe
   MaskOf<F> diffuse = uniform<F>(false);     // the ray is a diffuse one: also of velvet, whose light is glossy
   F alpha2{1.0f};                            // alpha_x alpha_y of the sampled lobe; 0 for a single direction
+  // Light enters the surface along wi, which is a single direction, to walk below it; the following describe the walk.
+  MaskOf<F> entered = uniform<F>(false);
+  V below_color{F(0.0f)}, below_radius{F(0.0f)}; // radius in the user's units
+  F below_g{0.0f};
+  WordOf<F> below_method{0u}; // SubsurfaceMethod
 };
 
 // Contract
@@ -69,6 +74,11 @@ template <class F> struct Bsdf {
   // A smooth sheet scatters rays of the camera; other rays pass it straight: their share is no lobe.
   B seen_by_camera = uniform<F>(true);
   V straight{F(0.0f)};
+  // Walks below the surface: whether the integrator sends any; paths that a diffuse lobe has scattered before; paths that come
+  // from below; and the width of a pixel there, in the user's units.
+  bool walks = false;
+  B after_diffuse = uniform<F>(false), leaving = uniform<F>(false);
+  F pixel{0.0f};
   // Uninitialised: only the first frame_count and count entries exist.
   union {
     Frame<F> frames[kMaxFrames];

@@ -9,6 +9,7 @@
 #include "bsdf/microfacet_eval.h"
 #include "bsdf/normals.h"
 #include "bsdf/sheen.h"
+#include "bsdf/subsurface_lobe.h"
 #include "bsdf/toon.h"
 #include "simd/vectors.h"
 

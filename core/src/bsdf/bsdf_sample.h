@@ -11,7 +11,7 @@ template <class F> struct Bsdf<F>::Direction {
   V wi, h, weight; // in the lobe's frame; weight of single directions over their probability within the lobe
   F probability;   // of single directions, within the lobe
   B valid, single, has_h;
-  B through; // passes the surface; hair: is not reflected by the fibre's surface
+  B through; // passes the surface; hair: is not reflected by the fibre's surface; subsurface: enters
 };
 
 // Samples a direction from one lobe, in the lanes that selected it.
@@ -91,9 +91,13 @@ template <class F> void Bsdf<F>::draw(const Lobe<F> &lobe, B mine, F u_side, F u
   case LobeShape::Hair:
     wi = is_hair(lobe, Hair::Chiang) ? chiang_sample(lobe, wo_l, u_side, u, v, reflected) : hair_sample(lobe, wo_l, u, v);
     break;
+  case LobeShape::Subsurface:
+    wi = entry_sample(lobe, wo_l, frames[lobe.frame].to_local(-ng), u_side, u, v, valid);
+    weight = V(one);
+    break;
   }
   const bool wide = lobe.shape == LobeShape::Lambert || lobe.shape == LobeShape::Matte || lobe.shape == LobeShape::Sheen ||
-                    lobe.shape == LobeShape::Toon || is_hair(lobe);
+                    lobe.shape == LobeShape::Toon || is_hair(lobe) || is_subsurface(lobe);
   if (!wide) {
     // A lobe seen from behind reflects nothing; a direction sampled below the horizon is lost.
     valid = valid & (wo_l.z > zero);
@@ -101,7 +105,8 @@ template <class F> void Bsdf<F>::draw(const Lobe<F> &lobe, B mine, F u_side, F u
       valid = valid & (single | (wi.z > zero));
   }
   direction.wi = select(mine, wi, direction.wi);
-  direction.through = select(mine, is_hair(lobe) ? !reflected : wi.z < zero, direction.through);
+  direction.through =
+      select(mine, is_hair(lobe) ? !reflected : (wi.z < zero) | uniform<F>(is_subsurface(lobe)), direction.through);
   direction.h = select(mine, h, direction.h);
   direction.weight = select(mine & single, lobe.color * weight / lobe.probability, direction.weight);
   direction.probability = select(mine, lobe.probability * probability, direction.probability);
@@ -163,8 +168,15 @@ template <class F> BsdfSample<F> Bsdf<F>::sample(F u_lobe, F u, F v) const {
     const B crossing = mine & uniform<F>(splits(lobe)) & (direction.wi.z < zero);
     result.component = select(mine, numbered(static_cast<int>(lobe.component)), result.component);
     result.component = select(crossing, numbered(static_cast<int>(Component::Transmission)), result.component);
-    if (lobe.component == Component::Diffuse || is_matte(lobe, Matte::Velvet))
+    if (is_subsurface(lobe)) {
+      result.entered = result.entered | mine;
+      result.below_color = select(mine, lobe.f90, result.below_color);
+      result.below_radius = select(mine, lobe.f0, result.below_radius);
+      result.below_g = select(mine, lobe.shininess, result.below_g);
+      result.below_method = select(mine, numbered(static_cast<int>(method_of(lobe))), result.below_method);
+    } else if (lobe.component == Component::Diffuse || is_matte(lobe, Matte::Velvet)) {
       result.diffuse = result.diffuse | mine;
+    }
   }
   for (int i = 0; i < frame_count; ++i) {
     const B standing = equal(frame, numbered(i));

@@ -1,6 +1,7 @@
 // Conversion of lobe inputs to lobes: the lobes at this hit and their weights.
 #pragma once
 
+#include "bsdf/add_subsurface.h"
 #include "bsdf/bsdf.h"
 #include "bsdf/microfacet.h"
 #include "bsdf/normals.h"
@@ -53,6 +54,26 @@ template <class F> LANCER_LANE void add_matte(Bsdf<F> &bsdf, const LobeInputs<F>
   }
   lobe.frame = frame;
   lobe.rules = inputs.rules;
+  bsdf.add(lobe);
+}
+
+template <class F> LANCER_LANE void add_subsurface_node(Bsdf<F> &bsdf, const LobeInputs<F> &inputs) {
+  using V = Vec3<F>;
+  const bool old = inputs.rules == Rules::Blender3;
+  const uint8_t frame = add_frame(bsdf, reflecting_normal(bsdf, inputs.normal));
+  const V matt = add_subsurface(bsdf, frame,
+                                {.option = inputs.option,
+                                 .rules = inputs.rules,
+                                 .weight = colored_weight(inputs),
+                                 .color = max(inputs.color, V(F(0.0f))),
+                                 .radius = inputs.edge,
+                                 .ior = inputs.ior,
+                                 .alpha = old ? F(1.0f) : clamp01(inputs.roughness),
+                                 .g = inputs.anisotropy});
+  LobeInputs<F> rest = inputs;
+  rest.color = matt;
+  rest.weight = V(F(1.0f));
+  Lobe<F> lobe = classic_lobe(LobeShape::Lambert, Component::Diffuse, frame, rest);
   bsdf.add(lobe);
 }
 
@@ -271,6 +292,8 @@ template <class F> void add_lobe(Bsdf<F> &bsdf, const LobeInputs<F> &inputs) {
     return add_hair(bsdf, inputs);
   case LobeKind::HairFibre:
     return add_hair_fibre(bsdf, inputs);
+  case LobeKind::Subsurface:
+    return add_subsurface_node(bsdf, inputs);
   case LobeKind::Principled:
     return;
   default:

@@ -64,9 +64,10 @@ enum class LobeShape : uint8_t {
   Ashikhmin = 8,  // Ashikhmin-Shirley, the clear coat of 3.x
   Sheen = 9,      // microfibres
   Toon = 10,
-  Hair = 11
+  Hair = 11,
+  Subsurface = 12 // light enters, to leave the surface elsewhere
 };
-inline constexpr uint32_t kLobeShapes = 12;
+inline constexpr uint32_t kLobeShapes = 13;
 constexpr uint32_t shape_bit(LobeShape shape) { return 1u << static_cast<uint32_t>(shape); }
 inline constexpr uint32_t kAllShapes = (1u << kLobeShapes) - 1u;
 
@@ -97,7 +98,7 @@ template <class F> struct Lobe {
   using B = MaskOf<F>;
 
   LobeShape shape = LobeShape::Lambert;
-  uint8_t variant = 0;                      // of Matte, Ashikhmin, Toon, Hair; Scatter of Microfacet
+  uint8_t variant = 0;                      // of Matte, Ashikhmin, Toon, Hair, Subsurface; Scatter of Microfacet
   Component component = Component::Diffuse; // of the light on wo's side, if a lobe reflects and transmits
   uint8_t frame = 0;                        // index into Bsdf::frames
   bool beckmann = false;                    // distribution of the facets; else GGX

@@ -18,7 +18,7 @@ struct LobeParts {
   bool normal = false, tangent = false, film = false, across = false;
   // Only of Principled.
   bool coat_normal = false, coat_tint = false, diffuse_roughness = false, emission = false, sheen = false, coat = false,
-       metal = false, glass = false, sheet = false;
+       metal = false, glass = false, sheet = false, below = false;
 };
 
 struct ReadyLobe {
@@ -67,6 +67,12 @@ LANCER_LANE constexpr bool needed(PrincipledParameter parameter, const LobeParts
   case P::film_thickness:
   case P::film_ior:
     return parts.film && !planned;
+  case P::subsurface:
+  case P::subsurface_radius:
+  case P::subsurface_color:
+  case P::subsurface_ior:
+  case P::subsurface_anisotropy:
+    return parts.below;
   case P::thin_wall:
   case P::wall_scattering:
   case P::wall_forward:
@@ -148,9 +154,10 @@ template <class F> struct LaneLobes : LaneRecords<F, ReadyLobe> {
     in.rules = first.principled.rules;
     in.distribution = first.principled.distribution;
     in.option = first.principled.option;
+    in.subsurface_option = first.principled.subsurface_option;
     // The inputs of facets are contained in their plans, where plans are kept.
     const bool planned = in.rules != Rules::Blender3 && first.has(PrincipledLayer::Gloss) &&
-                         (!parts.coat || first.has(PrincipledLayer::Coat)) && !parts.tangent && !parts.sheet;
+                         (!parts.coat || first.has(PrincipledLayer::Coat)) && !parts.tangent && !parts.sheet && !parts.below;
 #define LANCER_READ(kind, name, spoken, given)                                                                                 \
   if (needed(PrincipledParameter::name, parts, planned))                                                                       \
     in.name = value<ParameterKind::kind>(LANCER_OF(principled.name));
@@ -210,11 +217,17 @@ void add_described(const Material *const *materials, size_t number, const Values
     add_principled(bsdf, inputs, fixed ? ready.principled() : evaluate(*described.principled, read), ready);
 }
 
-// Adds all lobes of the material as seen from wo. out_ns, out_ng: of the surface, outwards. seen_by_camera: see Bsdf.
+// The paths whose hits ask for lobes: the members of the same names of Bsdf.
+template <class F> struct AskingPaths {
+  MaskOf<F> seen_by_camera = uniform<F>(true), after_diffuse = uniform<F>(false), leaving = uniform<F>(false);
+  bool walks = false;
+  F pixel{0.0f};
+};
+
+// Adds all lobes of the material as seen from wo. out_ns, out_ng: of the surface, outwards.
 template <class F, class Values>
 LANCER_LANE void find_lobes(const Material *const *materials, const Values &values, MaskOf<F> hole, const Vec3<F> &wo,
-                            const Vec3<F> &out_ns, const Vec3<F> &out_ng, Bsdf<F> &bsdf,
-                            MaskOf<F> seen_by_camera = uniform<F>(true)) {
+                            const Vec3<F> &out_ns, const Vec3<F> &out_ng, Bsdf<F> &bsdf, const AskingPaths<F> &paths = {}) {
   const Material &material = *materials[0];
   // Turn both normals to the viewer's side.
   const MaskOf<F> inside = dot(wo, out_ng) < F(0.0f);
@@ -224,9 +237,16 @@ LANCER_LANE void find_lobes(const Material *const *materials, const Values &valu
   if (material.normal.varies())
     ns = unit_or(Vec3<F>(values(material.normal)), ns);
   bsdf.begin(wo, ns, ng, inside, !(material.flags & MaterialFlag::NoBumpCorrection));
-  bsdf.seen_by_camera = seen_by_camera;
-  for (size_t i = 0; i < material.lobes.size(); ++i)
+  bsdf.seen_by_camera = paths.seen_by_camera;
+  bsdf.walks = paths.walks;
+  bsdf.after_diffuse = paths.after_diffuse;
+  bsdf.leaving = paths.leaving;
+  bsdf.pixel = paths.pixel;
+  const bool leaving = any(paths.leaving);
+  for (size_t i = 0; i < material.lobes.size() && !(leaving && !material.bends_exits); ++i)
     add_described<F>(materials, i, values, hole, bsdf);
+  if (leaving)
+    leave_below(bsdf);
   bsdf.complete();
 }
 

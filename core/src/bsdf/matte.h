@@ -77,7 +77,8 @@ enum class Matte : uint8_t {
   DustSheen = 3,
   Translucent = 4,
   Minnaert = 5,
-  RoughTranslucent = 6 // OrenNayar on the other side
+  RoughTranslucent = 6, // OrenNayar on the other side
+  BurleyExit = 7        // of light that leaves the surface after a walk below it
 };
 template <class F> bool is_matte(const Lobe<F> &lobe, Matte variant) {
   return lobe.shape == LobeShape::Matte && lobe.variant == static_cast<uint8_t>(variant);
@@ -142,6 +143,14 @@ template <class F> LANCER_LANE Lobe<F> make_burley(const Vec3<F> &weight, F roug
   lobe.alpha_x = roughness;
   return lobe;
 }
+// The part of it that returns light towards its source. The expected light is small, so that samples are left to the walk below
+// the surface.
+template <class F> LANCER_LANE Lobe<F> make_retroreflection(const Vec3<F> &weight, F roughness, F cos_o) {
+  Lobe<F> lobe = make_burley(weight, roughness);
+  lobe.energy = F(0.0f);
+  lobe.albedo = weight * (roughness * schlick_weight(cos_o));
+  return lobe;
+}
 
 // Ashikhmin's velvet; Cycles clamps sigma to at least 0.01, and shows the light in the glossy passes.
 template <class F> LANCER_LANE Lobe<F> make_velvet(const Vec3<F> &weight, F sigma) {
@@ -188,8 +197,14 @@ template <class F> LANCER_LANE ColorValue<F> burley_eval(const Lobe<F> &lobe, co
   const F view = schlick_weight(wo.z), light = schlick_weight(wi.z);
   // 2 cos^2 of the difference angle is 1 + wi.wo; it scales retroreflection.
   const F back = lobe.alpha_x * (dot(wi, wo) + 1.0f);
-  const F f = (1.0f - 0.5f * view) * (1.0f - 0.5f * light) + back * (light + view + light * view * (back - 1.0f));
+  const F f =
+      lobe.energy * ((1.0f - 0.5f * view) * (1.0f - 0.5f * light)) + back * (light + view + light * view * (back - 1.0f));
   return {Vec3<F>(f * wi.z * kInvPi), warp_cosine_hemisphere_pdf(wi.z)};
+}
+
+template <class V> LANCER_LANE ColorValue<NumberOf<V>> burley_exit_eval(const V &wi) {
+  const NumberOf<V> pdf = warp_cosine_hemisphere_pdf(wi.z);
+  return {V((1.0f - 0.5f * schlick_weight(wi.z)) * pdf), pdf};
 }
 
 template <class F> LANCER_LANE ColorValue<F> velvet_eval(const Lobe<F> &lobe, const Vec3<F> &wo, const Vec3<F> &wi) {
@@ -222,6 +237,8 @@ template <class F> LANCER_LANE ColorValue<F> matte_eval(const Lobe<F> &lobe, con
     return where<F>(above, oren_nayar_eval(lobe, wo, wi));
   case Matte::Burley:
     return where<F>(above, burley_eval(lobe, wo, wi));
+  case Matte::BurleyExit:
+    return where<F>(above, burley_exit_eval(wi));
   case Matte::Velvet:
     return where<F>(seen, velvet_eval(lobe, wo, wi));
   case Matte::DustSheen:

@@ -206,6 +206,28 @@ void add_layers(Bsdf<F> &bsdf, const LobeInputs<F> &inputs, const PrincipledInpu
         add_matt_sheet(bsdf, frame, both, clamp01(color), in, cos_in(bsdf, frame));
         weight = select(shared > kLeastLayer, weight * (1.0f - shared), weight);
       }
+      const F below = select(in_sheet, F(0.0f), clamp01(in.subsurface));
+      if (any(below > kLeastLayer)) {
+        F f0;
+        const V inner = clamp01(color);
+        const bool skin = in.subsurface_option % 4 == static_cast<uint32_t>(SubsurfaceMethod::Skin);
+        const uint8_t entry = any(bent) ? add_frame(bsdf, n_reflect) : frame;
+        Lobe<F> matt =
+            make_matte<F>(Matte::Burley, add_subsurface(bsdf, entry,
+                                                        {.option = in.subsurface_option,
+                                                         .rules = in.rules,
+                                                         .weight = select(below > kLeastLayer, below * (inner * weight), none),
+                                                         .color = inner,
+                                                         .radius = in.subsurface_radius,
+                                                         .ior = skin ? in.subsurface_ior : plastic_ior(in, f0),
+                                                         .alpha = alpha_of(in.roughness),
+                                                         .g = in.subsurface_anisotropy}));
+        matt.shape = LobeShape::Lambert;
+        matt.frame = entry;
+        matt.rules = in.rules;
+        bsdf.add(matt);
+        weight = select(below > kLeastLayer, weight * (1.0f - below), weight);
+      }
       lobe = make_diffuse(color * weight, color, clamp01(in.diffuse_roughness), in.option == 1, cos_in(bsdf, frame));
       lobe.rules = in.rules;
       break;

@@ -54,8 +54,45 @@ LANCER_LANE void add_glass3(Bsdf<F> &bsdf, uint8_t frame, const Vec3<F> &weight,
   add_facets3(bsdf, refraction, !several, cos_o, false);
 }
 
-template <class F> void add_sum3(Bsdf<F> &bsdf, const LobeInputs<F> &lobe, const PrincipledInputs<F> &in) {
+// The diffuse lobe, or the light below the surface: it takes all of the diffuse light, in a colour between the two, and leaves
+// the part that returns towards its source to a lobe of its own.
+template <class F>
+LANCER_LANE void add_diffuse3(Bsdf<F> &bsdf, uint8_t frame, const Vec3<F> &weight, const PrincipledInputs<F> &in) {
   using V = Vec3<F>;
+  const V none(F(0.0f)), inner = mix(in.base_color, in.subsurface_color, in.subsurface);
+  const MaskOf<F> below = in.subsurface > kLeastLayer, walks = below & uniform<F>(bsdf.walks) & !bsdf.after_diffuse;
+  const auto add = [&](Lobe<F> lobe, MaskOf<F> lanes) {
+    lobe.color = select(lanes, lobe.color, none);
+    lobe.frame = frame;
+    lobe.rules = in.rules;
+    bsdf.add(lobe);
+  };
+  add(make_burley(weight * select(below, inner, in.base_color), in.roughness), !walks);
+  if (!any(walks))
+    return;
+  const V all = select(walks, weight * inner, none);
+  add(make_retroreflection(all, in.roughness, cos_in(bsdf, frame)), walks);
+  const V matt = add_subsurface(bsdf, frame,
+                                {.option = in.subsurface_option,
+                                 .rules = in.rules,
+                                 .weight = all,
+                                 .color = inner,
+                                 .radius = in.subsurface_radius * in.subsurface,
+                                 .ior = in.subsurface_ior,
+                                 .g = in.subsurface_anisotropy,
+                                 .dimmed_exit = true});
+  add(make_burley(matt, F(0.0f)), walks);
+}
+
+template <class F> void add_sum3(Bsdf<F> &bsdf, const LobeInputs<F> &lobe, const PrincipledInputs<F> &given) {
+  using V = Vec3<F>;
+  PrincipledInputs<F> in = given;
+  // Behind a diffuse scattering the colour below the surface mixes into all lobes.
+  const MaskOf<F> mixed = bsdf.after_diffuse & (in.subsurface > F(0.0f));
+  if (any(mixed)) {
+    in.base_color = select(mixed, mix(in.base_color, in.subsurface_color, in.subsurface), in.base_color);
+    in.subsurface = select(mixed, F(0.0f), in.subsurface);
+  }
   const V one(F(1.0f)), none(F(0.0f));
   // All normals, including that of the diffuse lobe, are tilted so that the mirror direction is above the surface.
   const V n = reflecting_normal(bsdf, lobe.normal);
@@ -71,12 +108,8 @@ template <class F> void add_sum3(Bsdf<F> &bsdf, const LobeInputs<F> &lobe, const
   bsdf.emission += in.emission * lobe.weight;
 
   const MaskOf<F> is_diffuse = diffuse > kLeastLayer, is_dusty = is_diffuse & (in.sheen > kLeastLayer);
-  if (any(is_diffuse)) {
-    Lobe<F> burley = make_burley(select(is_diffuse, diffuse * in.base_color * lobe.weight, none), in.roughness);
-    burley.frame = frame;
-    burley.rules = in.rules;
-    bsdf.add(burley);
-  }
+  if (any(is_diffuse))
+    add_diffuse3(bsdf, frame, select(is_diffuse, diffuse * lobe.weight, none), in);
   if (any(is_dusty)) {
     const V hue = mix(one, hue_of(in.base_color, {0.2126729f, 0.7151522f, 0.0721750f}), in.sheen_tint.x);
     Lobe<F> dust = make_matte<F>(Matte::DustSheen, select(is_dusty, diffuse * in.sheen * hue * lobe.weight, none));

@@ -85,6 +85,8 @@ uint32_t shapes_of(LobeKind kind) {
   case LobeKind::Hair:
   case LobeKind::HairFibre:
     return shape_bit(LobeShape::Hair);
+  case LobeKind::Subsurface:
+    return shape_bit(LobeShape::Subsurface) | shape_bit(LobeShape::Lambert);
   case LobeKind::Principled:
     return shape_bit(LobeShape::Lambert) | shape_bit(LobeShape::Matte) | shape_bit(LobeShape::Microfacet) |
            shape_bit(LobeShape::Ashikhmin) | shape_bit(LobeShape::Sheen);
@@ -125,6 +127,8 @@ bool may_reflect(const PrincipledDescription &principled) {
 // Returns the shapes that a Principled lobe can become, without those of its absent layers.
 uint32_t principled_shapes(const PrincipledDescription &principled) {
   uint32_t shapes = shapes_of(LobeKind::Principled);
+  if (may_be_positive(principled.subsurface))
+    shapes |= shape_bit(LobeShape::Subsurface);
   if (principled.rules == Rules::Blender3)
     return shapes;
   shapes &= ~shape_bit(LobeShape::Ashikhmin);
@@ -142,6 +146,8 @@ void add_material(const Material &material, Features &features) {
     features.shapes |= lobe.principled ? principled_shapes(*lobe.principled) : shapes_of(lobe.kind);
     if (is_glass(lobe))
       features.bits |= kFeatureGlass;
+    if (goes_below(lobe))
+      features.bits |= kFeatureSubsurface;
   }
   if (material.is_transparent())
     features.bits |= kFeatureTransparency;
@@ -195,13 +201,13 @@ Features find_features(const Description &description) {
 }
 
 std::string feature_names(const Features &features) {
-  static const char *const shapes[] = {"lambert", "beckmann",   "mirror",    "dielectric", "phong", "blinn-phong",
-                                       "matte",   "microfacet", "ashikhmin", "sheen",      "toon",  "hair"};
+  static const char *const shapes[] = {"lambert",    "beckmann",  "mirror", "dielectric", "phong", "blinn-phong", "matte",
+                                       "microfacet", "ashikhmin", "sheen",  "toon",       "hair",  "subsurface"};
   static const char *const bits[] = {"transparency", "triangles", "instances",    "spheres",         "planes",
                                      "cylinders",    "cones",     "point-lights", "spot-lights",     "sun-lights",
                                      "area-lights",  "emitters",  "environment",  "environment-map", "vertex-colors",
                                      "nodes",        "textures",  "displacement", "holdout",         "visibility",
-                                     "glass",        "portals"};
+                                     "glass",        "portals",   "walks"};
   static_assert(std::size(shapes) == kLobeShapes);
   std::string text;
   const auto add = [&](const char *name) {

@@ -32,6 +32,7 @@ enum Feature : uint32_t {
   kFeatureVisibility = 1u << 19, // some object is hidden from some rays
   kFeatureGlass = 1u << 20,      // some material reflects and refracts
   kFeaturePortals = 1u << 21,    // some surface sends light on elsewhere
+  kFeatureSubsurface = 1u << 22, // light enters some surface
 };
 
 struct Features {

@@ -61,7 +61,9 @@ size_t add_principled(const LobeDescription &lobe, const PrincipledDescription &
   // Two lobes of a glass sheet and two of a matt one stand beside those of lanes without a wall.
   const size_t sheet = may_be_positive(in.thin_wall) ? 4 : 0;
   // Before Blender 4, plastic and metal are one lobe, and glass can be two.
-  return sheet + size_t(sheen) + size_t(coat) + size_t(metal && !old) + (glass ? (old ? 2 : 1) : 0) + 2;
+  // The light below a surface has a lobe for the channels that walk, one for the others, and before Blender 4 a third.
+  const size_t below = may_be_positive(in.subsurface) ? (old ? 2 : 3) : 0;
+  return sheet + below + size_t(sheen) + size_t(coat) + size_t(metal && !old) + (glass ? (old ? 2 : 1) : 0) + 2;
 }
 
 size_t add_lobe(const LobeDescription &lobe, Frames &frames) {
@@ -86,6 +88,9 @@ size_t add_lobe(const LobeDescription &lobe, Frames &frames) {
   case LobeKind::HairFibre:
     frames.stretched(lobe.normal, lobe.tangent, lobe.rotation);
     return 1;
+  case LobeKind::Subsurface:
+    frames.reflecting(lobe.normal);
+    return 2;
   case LobeKind::Glass:
     frames.reflecting(lobe.normal);
     return old && lobe.distribution != Facets::MultiGgx ? 2 : 1;
@@ -191,6 +196,7 @@ LobeParts::LobeParts(const LobeInputs<float> &inputs, const PrincipledInputs<flo
   if (!is_principled)
     return;
   sheet = in.thin_wall > 0.0f;
+  below = in.subsurface > 0.0f;
   coat_normal = in.coat_normal != none;
   coat_tint = in.coat_tint != glm::vec3(1.0f);
   diffuse_roughness = in.diffuse_roughness != 0.0f;
@@ -209,11 +215,12 @@ std::string ReadyLobe::code() const {
   add(is_principled ? principled.rules : inputs.rules);
   add(is_principled ? principled.distribution : inputs.distribution);
   add(is_principled ? principled.option : inputs.option);
+  add(principled.subsurface_option);
   for (const auto &plan : plans[0])
     add(plan != nullptr);
   for (const bool part :
        {parts.normal, parts.tangent, parts.coat_normal, parts.coat_tint, parts.diffuse_roughness, parts.emission, parts.sheen,
-        parts.coat, parts.metal, parts.glass, parts.film, parts.across, parts.sheet})
+        parts.coat, parts.metal, parts.glass, parts.film, parts.across, parts.sheet, parts.below})
     add(part);
   return code;
 }

@@ -96,6 +96,8 @@ uint32_t kind_of(const Lobe<float> &lobe) {
     return LANCER_TOON;
   case LobeShape::Hair:
     return is_hair(lobe, Hair::Chiang) ? LANCER_HAIR_FIBRE : LANCER_HAIR;
+  case LobeShape::Subsurface:
+    return LANCER_SUBSURFACE;
   }
   return LANCER_LAMBERT;
 }

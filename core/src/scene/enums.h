@@ -123,4 +123,9 @@ struct MaterialFlag { enum : uint32_t {
   X(Index, film_ior, "film IOR", 1.33f)                                                                                        \
   X(Share, thin_wall, "thin wall", 0.0f)                                                                                       \
   X(Share, wall_scattering, "wall scattering", 0.0f)                                                                           \
-  X(Share, wall_forward, "wall forward", 0.5f)
+  X(Share, wall_forward, "wall forward", 0.5f)                                                                                 \
+  X(Share, subsurface, "subsurface", 0.0f)                                                                                     \
+  X(Color, subsurface_radius, "subsurface radius", 0.0f)                                                                       \
+  X(Color, subsurface_color, "subsurface colour", 0.8f)                                                                        \
+  X(Index, subsurface_ior, "subsurface IOR", 1.4f)                                                                             \
+  X(Turns, subsurface_anisotropy, "subsurface anisotropy", 0.0f)

@@ -90,6 +90,7 @@ std::shared_ptr<const PrincipledDescription> read_principled(const MaterialReade
   principled->rules = static_cast<Rules>(given.rules);
   principled->distribution = static_cast<Facets>(given.distribution);
   principled->option = given.option;
+  principled->subsurface_option = given.subsurface_option;
 #define LANCER_READ(kind, name, spoken, used) principled->name = reader.read<ParameterKind::kind>(spoken, given.name, used);
   LANCER_PRINCIPLED_PARAMETERS(LANCER_READ)
 #undef LANCER_READ
@@ -140,6 +141,12 @@ LobeDescription read_lobe(const MaterialReader &reader, const lancer_lobe &given
     lobe.ior = reader.read_ior("IOR", given.ior);
     lobe.edge = reader.read_color("edge", given.edge, 1.0f);
   }
+  if (lobe.kind == LobeKind::Subsurface) {
+    lobe.roughness = reader.read_share("roughness", given.roughness, 1.0f);
+    lobe.ior = reader.read_ior("IOR", given.ior);
+    lobe.edge = reader.read_color("radius", given.edge);
+    lobe.anisotropy = reader.read_scalar("anisotropy", given.anisotropy, -1.0f, 1.0f, 0.0f);
+  }
   if (lobe.kind == LobeKind::Glass || lobe.kind == LobeKind::Conductor) {
     lobe.film_thickness = reader.read_scalar("film thickness", given.film_thickness, 0.0f, kBrightest, 0.0f);
     if (may_be_positive(lobe.film_thickness))
@@ -160,7 +167,7 @@ void check_lobe(const std::string &object, const lancer_lobe &lobe, uint32_t i) 
   };
   check("kind", lobe.kind, LANCER_LOBE_KIND_COUNT);
   check("distribution", lobe.distribution, LANCER_DISTRIBUTION_MULTI_GGX + 1);
-  check("option", lobe.option, lobe.kind == LANCER_CONDUCTOR ? 3 : 2);
+  check("option", lobe.option, lobe.kind == LANCER_SUBSURFACE ? 8 : lobe.kind == LANCER_CONDUCTOR ? 3 : 2);
   check("rules", lobe.rules, LANCER_RULES_BLENDER_52 + 1);
   if (lobe.kind != LANCER_PRINCIPLED)
     return;
@@ -168,6 +175,7 @@ void check_lobe(const std::string &object, const lancer_lobe &lobe, uint32_t i) 
     bad_argument(where + "no record: principled is NULL");
   check("distribution", lobe.principled->distribution, LANCER_DISTRIBUTION_MULTI_GGX + 1);
   check("option", lobe.principled->option, 2);
+  check("subsurface option", lobe.principled->subsurface_option, 8);
   check("rules", lobe.principled->rules, LANCER_RULES_BLENDER_52 + 1);
 }
 
@@ -203,6 +211,9 @@ void make_schedules(Material &material) {
   }
   for (const LobeDescription &lobe : material.lobes) {
     collect(lobe, surface);
+    const bool bent = lobe.normal.varies() || lobe.normal.value != glm::vec3(0.0f) || material.normal.varies();
+    const bool dimmed = lobe.principled && lobe.principled->rules == Rules::Blender3;
+    material.bends_exits |= goes_below(lobe) && (bent || dimmed);
     if (!lobe.principled)
       continue;
     const Parameter &below = lobe.principled->emission;

@@ -28,11 +28,16 @@ enum class LobeKind : uint32_t {
   Minnaert = 14,
   Toon = 15,
   Hair = 16,
-  HairFibre = 17
+  HairFibre = 17,
+  Subsurface = 18
 };
-inline constexpr uint32_t kLobeKinds = 18;
+inline constexpr uint32_t kLobeKinds = 19;
 // Maximum number of lobes of a material, and of a hit after Principled has become its lobes.
 inline constexpr int kMaxLobes = 64;
+
+// How light goes below a surface: by a profile, or by a random walk with the radii of Blender before 5.2, with radii that keep
+// the visible blur, or with the mean free paths themselves.
+enum class SubsurfaceMethod : uint32_t { Burley = 0, RandomWalkLegacy = 1, Skin = 2, RandomWalk = 3 };
 
 // Microfacet distribution of a rough surface.
 enum class Facets : uint32_t { Ggx = 0, Beckmann = 1, AshikhminShirley = 2, MultiGgx = 3 };
@@ -76,6 +81,7 @@ template <class F> struct PrincipledInputs {
   Rules rules = Rules::Blender45;
   Facets distribution = Facets::MultiGgx;
   uint32_t option = 1; // of the diffuse lobe
+  uint32_t subsurface_option = 0;
 #define LANCER_MEMBER(kind, name, spoken, given) ValueOf<F, ParameterKind::kind> name{F(given)};
   LANCER_PRINCIPLED_PARAMETERS(LANCER_MEMBER)
 #undef LANCER_MEMBER

@@ -17,6 +17,7 @@ struct PrincipledDescription {
   Rules rules = Rules::Blender45;
   Facets distribution = Facets::MultiGgx;
   uint32_t option = 1; // of the diffuse lobe
+  uint32_t subsurface_option = 0;
 #define LANCER_MEMBER(kind, name, spoken, given) Parameter name;
   LANCER_PRINCIPLED_PARAMETERS(LANCER_MEMBER)
 #undef LANCER_MEMBER
@@ -67,6 +68,7 @@ struct Material {
 
   bool layered_emission = false;                       // a Principled lobe emits
   bool has_sheets = false;                             // a smooth sheet may let rays pass straight
+  bool bends_exits = false;                            // light from below leaves about other normals than that of the surface
   bool fixed() const { return program.nodes.empty(); } // no node decides anything
   bool emits() const { return layered_emission || emission.varies() || emission.value != glm::vec3(0.0f); }
   bool displaces() const { return displacement.varies() || displacement.value != glm::vec3(0.0f); }
@@ -80,6 +82,11 @@ inline bool is_hair(const LobeDescription &lobe) { return lobe.kind == LobeKind:
 // Whether a lobe beside Principled may have a film.
 inline bool has_film(const LobeDescription &lobe) {
   return (lobe.kind == LobeKind::Glass || lobe.kind == LobeKind::Conductor) && may_be_positive(lobe.film_thickness);
+}
+
+// Whether light may enter the surface by a lobe.
+inline bool goes_below(const LobeDescription &lobe) {
+  return lobe.kind == LobeKind::Subsurface || (lobe.principled && may_be_positive(lobe.principled->subsurface));
 }
 
 // Clamps; NaN becomes low.
@@ -162,7 +169,7 @@ LANCER_LANE LobeInputs<F> evaluate(const LobeDescription &lobe, const ParameterR
   inputs.roughness = read.share(lobe.roughness);
   inputs.ior = read.ior(lobe.ior, lobe.kind < LobeKind::Diffuse ? 0.0f : kSmallestIor);
   inputs.shininess = read.scalar(lobe.shininess, 0.0f, 1e8f);
-  if (lobe.kind == LobeKind::Conductor || lobe.kind == LobeKind::HairFibre)
+  if (lobe.kind == LobeKind::Conductor || lobe.kind == LobeKind::HairFibre || lobe.kind == LobeKind::Subsurface)
     inputs.edge = read.color(lobe.edge, f82 ? 1.0f : kBrightest);
   inputs.anisotropy = read.scalar(lobe.anisotropy, -0.99f, 0.99f);
   inputs.rotation = read.turns(lobe.rotation);
@@ -182,6 +189,7 @@ LANCER_LANE PrincipledInputs<F> evaluate(const PrincipledDescription &principled
   inputs.rules = principled.rules;
   inputs.distribution = principled.distribution;
   inputs.option = principled.option;
+  inputs.subsurface_option = principled.subsurface_option;
 #define LANCER_READ(kind, name, spoken, given) inputs.name = read.template value<ParameterKind::kind>(principled.name);
   LANCER_PRINCIPLED_PARAMETERS(LANCER_READ)
 #undef LANCER_READ

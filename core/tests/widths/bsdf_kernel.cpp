@@ -85,27 +85,9 @@ PrincipledInputs<F> layers_of(const Described *of) {
   in.rules = of->layers.rules;
   in.distribution = of->layers.distribution;
   in.option = of->layers.option;
-#define LANCER_PUT(member) put_lanes(in.member, [&](int i) { return of[i].layers.member; })
-  LANCER_PUT(base_color);
-  LANCER_PUT(metallic);
-  LANCER_PUT(roughness);
-  LANCER_PUT(ior);
-  LANCER_PUT(diffuse_roughness);
-  LANCER_PUT(specular);
-  LANCER_PUT(specular_tint);
-  LANCER_PUT(anisotropic);
-  LANCER_PUT(anisotropic_rotation);
-  LANCER_PUT(transmission);
-  LANCER_PUT(transmission_roughness);
-  LANCER_PUT(coat);
-  LANCER_PUT(coat_roughness);
-  LANCER_PUT(coat_ior);
-  LANCER_PUT(coat_tint);
-  LANCER_PUT(coat_normal);
-  LANCER_PUT(sheen);
-  LANCER_PUT(sheen_roughness);
-  LANCER_PUT(sheen_tint);
-  LANCER_PUT(emission);
+  in.subsurface_option = of->layers.subsurface_option;
+#define LANCER_PUT(kind, name, spoken, given) put_lanes(in.name, [&](int i) { return of[i].layers.name; });
+  LANCER_PRINCIPLED_PARAMETERS(LANCER_PUT)
 #undef LANCER_PUT
   return in;
 }
@@ -120,6 +102,9 @@ void begin(Bsdf<F> &bsdf, const Place *of, bool bump_correction) {
   M inside;
   put_lanes(inside, [&](int i) { return of[i].inside; });
   bsdf.begin(vector_of(of, &Place::wo), vector_of(of, &Place::ns), vector_of(of, &Place::ng), inside, bump_correction);
+  bsdf.walks = true;
+  bsdf.after_diffuse = inside;
+  bsdf.pixel = abs(bsdf.ns.x);
 }
 
 void report_value(const char *name, const BsdfValue<F> &value, Report &add) {
@@ -162,9 +147,19 @@ void report_all(Bsdf<F> &bsdf, const Place *of, Report &add) {
     add("sample: transmitted", sample.transmitted);
     add("sample: component", sample.component);
     add("sample: alpha2", sample.alpha2);
+    add("sample: entered", sample.entered);
+    add("sample: below", sample.below_color);
+    add("sample: below", sample.below_radius);
+    add("sample: below", sample.below_g);
+    add("sample: below", sample.below_method);
     report_value("eval of what was drawn", bsdf.eval(sample.wi), add);
     report_value("eval_lit of what was drawn", bsdf.eval_lit(sample.wi), add);
   }
+  // Let light leave from below in some lanes.
+  bsdf.leaving = bsdf.wo.x > F(0.0f);
+  leave_below(bsdf);
+  bsdf.complete();
+  report_value("eval of an exit", bsdf.eval(bsdf.wo), add);
 }
 
 void report_described(const Place *places, const Described *const *lobes, int count, bool bump_correction, BsdfRows &rows) {

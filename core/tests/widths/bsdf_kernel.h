@@ -29,7 +29,7 @@ struct Place {
 // The bits of all values of a surface, a row each. All not-a-numbers are one: the compiler chooses the operand that a sum
 // keeps.
 struct BsdfRows {
-  static constexpr int kLanes = 16, kMost = 320;
+  static constexpr int kLanes = 16, kMost = 360;
 
   struct Row {
     const char *name;

@@ -29,7 +29,8 @@ void PathIntegrator::run(std::span<const SampleAddress> addresses, std::span<Sam
     // Keep the light before the last bounces, from which the light beyond them is estimated.
     if (last_bounces_.due(turn))
       last_bounces_.note(
-          turn, queue_.paths.size(), settings_.splits.paths > 1, [&](size_t i) { return queue_.paths[i].sample; }, gathered);
+          turn, queue_.paths.size(), settings_.splits.paths > 1 || walk_, [&](size_t i) { return queue_.paths[i].sample; },
+          gathered);
     // Add the light samples that no surface occludes.
     counts_.shadow +=
         shadow_.trace([&](const WaitingLight &waiting, const glm::vec3 &light) { film_.add_lit(waiting, light); });
@@ -90,6 +91,38 @@ void PathIntegrator::shade() {
     }
     shade_block();
   });
+  leave();
+}
+
+// Walks below surfaces, and shades the places where paths leave them.
+void PathIntegrator::leave() {
+  if (below_.empty())
+    return;
+  counts_.bounce += walk_->walk(walks_);
+  const size_t first = queue_.paths.size();
+  for (size_t i = 0; i < below_.size(); ++i) {
+    if (!walks_[i].hit.valid())
+      continue;
+    Path &path = queue_.paths.emplace_back(below_[i]);
+    path.beta = walks_[i].beta;
+    queue_.rays.push_back(walks_[i].ray);
+    queue_.from.push_back({});
+    hits_.push_back(walks_[i].hit);
+  }
+  below_.clear();
+  walks_.clear();
+  queues_.begin();
+  for (size_t i = first; i < queue_.paths.size(); ++i)
+    queues_.add(i, hits_[i]);
+  vertices_ += queues_.size();
+  queues_.each([&](std::span<const ShadingQueues::Queued> met) {
+    for (const ShadingQueues::Queued &queued : met) {
+      put_in_lane(queued.number, *queued.material);
+      if (surface_.full())
+        shade_block();
+    }
+    shade_block();
+  });
 }
 
 // Adds the lamps on the way of each ray, with the weight of multiple importance sampling.
@@ -132,6 +165,10 @@ void PathIntegrator::put_in_lane(size_t number, const Material &material) {
       !scene_.geometry.instances[hit.instance].holdout)
     return;
   const uint32_t lane = surface_.add(queue_.rays[number], hit, material, ends);
+  if (walk_) {
+    const double way = path.length + hit.t * glm::length(queue_.rays[number].d);
+    surface_.place_path(lane, path.after_diffuse, path.leaving, surface_.pixel_width(way));
+  }
   path_[lane] = number;
   leader_[lane] = 0;
   ends_ |= uint32_t{ends} << lane;
@@ -186,6 +223,8 @@ void PathIntegrator::cut_holdouts() {
 // Adds the light that a surface emits, weighted against light samples, and its denoising guides.
 void PathIntegrator::add_emission(uint32_t lane) {
   const Path &path = path_of(lane);
+  if (path.leaving)
+    return;
   const glm::vec3 emission = surface_.emission(lane);
   if (emission != glm::vec3(0.0f))
     film_.add(path, path.beta * emission * met_.emission_weight(queue_.from[path_[lane]], surface_.surface(lane)), false);
@@ -375,14 +414,14 @@ void PathIntegrator::scatter(uint32_t lane, uint32_t branch) {
   const Path &path = path_of(lane);
   if (ends_ >> lane & 1 || !(block.sampled >> lane & 1))
     return;
+  if (block.entered >> lane & 1)
+    return enter(lane, branch);
   const bool splits = splitting_ >> lane & 1;
   const uint32_t sharers = splits ? settings_.splits.paths : path.sharers;
   glm::vec3 beta = get(block.beta, lane);
   if (!ScatterStage::survives(path.scatterings + 1, numbers_.numbers.of[kVertexRoulette][lane], float(sharers), beta))
     return;
-  Path &next = next_.paths.emplace_back(path);
-  if (splits)
-    next.split_off(branch, sharers, leader_[lane]);
+  Path &next = branch_off(next_.paths, lane, branch);
   next.scatter(beta, scatter_.kind(lane), block.diffuse >> lane & 1, block.transmitted >> lane & 1, block.pdf[lane] == 0.0);
   next.in_view = path.in_view && film_.stays_in_view(block, lane);
   next.sharp = path.sharp && (block.pdf[lane] == 0.0 || block.pdf_scattered[lane] >= kSharpDensity);
@@ -391,6 +430,42 @@ void PathIntegrator::scatter(uint32_t lane, uint32_t branch) {
   next_.from.push_back({get(surface_.surfaces().p, lane), get(surface_.lobes().ns, lane),
                         (surface_.lobes().transmits >> lane & 1) != 0, block.pdf[lane], 0.0});
   scatter_.write_ray(lane, surface_.hit(lane), next.kinds, next_.rays.emplace_back());
+}
+
+// Appends a copy of a lane's path, which is a branch where the lane splits.
+Path &PathIntegrator::branch_off(std::vector<Path> &paths, uint32_t lane, uint32_t branch) const {
+  Path &next = paths.emplace_back(path_of(lane));
+  if (splitting_ >> lane & 1)
+    next.split_off(branch, settings_.splits.paths, leader_[lane]);
+  return next;
+}
+
+// Sends the path of a lane below the surface.
+void PathIntegrator::enter(uint32_t lane, uint32_t branch) {
+  const ScatterBlock &block = scatter_.next();
+  const Path &path = path_of(lane);
+  Path &next = branch_off(below_, lane, branch);
+  next.enter(get(block.beta, lane));
+  next.length += surface_.distance(lane);
+  film_.set_shares(path, next, block.share, lane);
+  const glm::vec3 outwards = get(surface_.surfaces().ng, lane), ng = get(surface_.lobes().ng, lane);
+  const Hit &hit = surface_.hit(lane);
+  Walk &walk = walks_.emplace_back();
+  walk.method = static_cast<SubsurfaceMethod>(block.below_method[lane]);
+  walk.ray.o = get(surface_.surfaces().p, lane);
+  walk.ray.d = glm::dvec3(get(block.wi, lane));
+  walk.ray.skip_instance = hit.instance;
+  walk.ray.skip_primitive = hit.primitive;
+  walk.n = walk.method == SubsurfaceMethod::Burley ? ng : get(surface_.lobes().ns, lane);
+  walk.inside = glm::dot(outwards, ng) < 0.0f;
+  walk.beta = next.beta;
+  walk.color = get(block.below_color, lane);
+  walk.radius = get(block.below_radius, lane) * float(scene_.normalisation.scale);
+  walk.g = block.below_g[lane];
+  walk.pixel = next.sampler.pixel();
+  walk.sample = next.sampler.sample();
+  walk.dimension = next.vertex_dimension();
+  walk.instance = hit.instance;
 }
 
 } // namespace lancer

@@ -14,6 +14,7 @@
 #include "integrator/stages/shadow.h"
 #include "integrator/stages/surface.h"
 #include "integrator/stages/texture_prefetch.h"
+#include "integrator/stages/walk.h"
 
 #include <algorithm>
 #include <optional>
@@ -28,6 +29,10 @@ public:
         occlusion_(scene, settings), shadow_(scene, camera, settings), last_bounces_(settings.max_bounces) {
     if (std::ranges::any_of(scene.materials, [](const Material &material) { return material.program.looks_around; }))
       surface_.look_by(node_rays_.emplace(scene));
+    if (scene.features & kFeatureSubsurface) {
+      surface_.walk_below();
+      walk_.emplace(scene);
+    }
     PathIntegrator::set_splits(settings.splits);
   }
 
@@ -63,6 +68,7 @@ private:
   void add_environment();
   void put_in_lane(size_t number, const Material &material);
   void shade_block();
+  void leave();
   void cut_holdouts();
   void add_emission(uint32_t lane);
   void split();
@@ -77,6 +83,8 @@ private:
   const Portal *choose_portal(uint32_t lane, Path &path) const;
   void enter_portal(uint32_t lane, const Portal &portal, Ray &ray) const;
   void scatter(uint32_t lane, uint32_t branch);
+  Path &branch_off(std::vector<Path> &paths, uint32_t lane, uint32_t branch) const;
+  void enter(uint32_t lane, uint32_t branch);
 
   const Path &path_of(uint32_t lane) const { return queue_.paths[path_[lane]]; }
 
@@ -96,9 +104,13 @@ private:
   ScatterStage scatter_;
   OcclusionStage occlusion_;
   ShadowStage shadow_;
+  std::optional<WalkStage> walk_; // if light enters some surface
   LastBounces last_bounces_;
 
   Queue queue_, next_;
+  // Paths that have entered a surface: path i takes walk i.
+  std::vector<Path> below_;
+  std::vector<Walk> walks_;
   std::vector<Hit> hits_;      // of the queue
   std::vector<uint32_t> left_; // surfaces that each path may still pass
   std::vector<size_t> missed_; // numbers of the paths that see the environment

@@ -23,10 +23,13 @@ struct Path {
   uint32_t crossings = 0;           // transparent surfaces passed since the last scattering
   uint32_t passed_through = 0;      // transparent surfaces passed in all
   PathStory story;                  // for nodes that read it
-  bool in_view = true; // since the camera, the path has passed straight on or through clear glass alone; set by PATH
-  bool sharp = true;   // no ray since the camera was sampled by a wide lobe
-  bool last = false;   // the path ends at the next surface
-  double length = 0.0; // of the whole path, normalised units; set by PATH
+  bool in_view = true;        // since the camera, the path has passed straight on or through clear glass alone; set by PATH
+  bool sharp = true;          // no ray since the camera was sampled by a wide lobe
+  bool last = false;          // the path ends at the next surface
+  uint32_t entries = 0;       // walks below surfaces so far
+  bool leaving = false;       // the path is at the end of a walk
+  bool after_diffuse = false; // a diffuse lobe has scattered the path
+  double length = 0.0;        // of the whole path, normalised units; set by PATH
 
   // Returns the number of surfaces that the path may still pass straight through: up to limit on the whole path, and at least
   // one unless the path is at its last surface. After these, the path ends at the next surface and gets only the light that
@@ -53,7 +56,18 @@ struct Path {
     kinds = kind;
     crossings = 0;
     ++scatterings;
+    leaving = false;
+    after_diffuse = after_diffuse || is_diffuse;
     story.scatter(is_diffuse, transmitted, singular);
+  }
+  // Sends the path below the surface. A walk is no scattering that counts.
+  void enter(const glm::vec3 &throughput) {
+    beta = throughput;
+    kinds &= ~uint32_t(RayKind::Camera);
+    story.kinds &= uint8_t(~uint32_t(RayKind::Camera));
+    ++entries;
+    leaving = true;
+    in_view = false;
   }
   // pass: probability of passing straight through.
   bool chooses_to_pass(float pass) const {
@@ -68,7 +82,7 @@ struct Path {
   // Returns the dimension of the numbers of nodes' rays at the path's current surface.
   uint32_t nodes_dimension() const { return kDimensionNodes + 2 * (scatterings * kMaxCrossings + crossings); }
   // Returns the first dimension of the path's current vertex.
-  uint32_t vertex_dimension() const { return kDimensionVertex + scatterings * kVertexStride; }
+  uint32_t vertex_dimension() const { return kDimensionVertex + (scatterings + entries) * kVertexStride; }
   // Whether the path belongs to the first sample of its pixel. paths: number of paths after a split.
   bool is_first(uint32_t paths) const { return sampler.sample() < (split ? paths : 1u); }
   // Returns the number of the leader when the path splits into count paths.

@@ -17,10 +17,14 @@ struct alignas(64) ScatterBlock {
   Floats pdf_scattered; // of wi among scattered paths, 0: a single direction
   Floats alpha2;        // alpha_x alpha_y of the sampled lobe, 0 for a single direction
   Floats share[2][3];   // diffuse and glossy share of the sample's weight, where shares are wanted
+  // Of walks below the surface, in lanes that enter it: see BsdfSample.
+  Floats below_color[3], below_radius[3], below_g;
+  Words below_method;
   // Each of the following is one bit per lane.
   uint32_t sampled = 0;     // there is a next direction
   uint32_t diffuse = 0;     // the next ray is a diffuse one, as BsdfSample::diffuse says
   uint32_t transmitted = 0; // the next ray passes through the surface
+  uint32_t entered = 0;     // the path enters the surface, to walk below it
 };
 
 // The vertices that scatter. beta: throughput from the vertex to the camera; count: number of paths that leave the vertex.

@@ -12,7 +12,7 @@ void scatter(const ScatteringVertices &vertices, ScatterBlock &next) {
   const SurfaceBlock &surfaces = vertices.surfaces;
   const LobeBlock &lobes = vertices.lobes;
   const VertexNumbers &numbers = vertices.numbers;
-  next.sampled = next.diffuse = next.transmitted = 0;
+  next.sampled = next.diffuse = next.transmitted = next.entered = 0;
   for (int first = 0; first < kBlockLanes; first += kLanes) {
     if (!(lobes.used >> first))
       return;
@@ -33,6 +33,13 @@ void scatter(const ScatteringVertices &vertices, ScatterBlock &next) {
     next.sampled |= placed_bits((!black(sample.weight)) & (sample.pdf > F(0.0f)), first);
     next.diffuse |= placed_bits(sample.diffuse, first);
     next.transmitted |= placed_bits(sample.transmitted, first);
+    if (any(sample.entered)) {
+      next.entered |= placed_bits(sample.entered, first);
+      store3(next.below_color, first, sample.below_color);
+      store3(next.below_radius, first, sample.below_radius);
+      store(next.below_g + first, sample.below_g);
+      store(next.below_method + first, sample.below_method);
+    }
   }
 }
 

@@ -14,7 +14,7 @@ void Shader::shade(const Surface &surface, const View &view, Shaded &result, boo
   // Evaluate the nodes, then build the lobes as seen from wo.
   nodes_.run(material->program, material->surface_nodes, surface, view);
   find_lobes<float>(&material, PlaceValues{nodes_.values()}, false, view.wo, surface.ns, surface.ng, result.bsdf,
-                    seen_by_camera);
+                    {.seen_by_camera = seen_by_camera});
   result.emission = nodes_.value(material->emission) + result.bsdf.emission;
   if (material->is_transparent())
     result.transmittance = glm::max(nodes_.value(material->transmittance), 0.0f);

@@ -44,7 +44,11 @@ struct alignas(64) MaterialBlock {
   uint32_t holes = 0;                              // bits of lanes: lobes are hidden by a hole; by cut_holdouts()
   uint32_t ends = 0;                               // bits of lanes: the surface scatters no light
   uint32_t seen_by_camera = 0;                     // bits of lanes, by add()
-  bool shares = false;                             // diffuse and glossy shares of light are wanted
+  // Paths below surfaces: whether PATH sends any; by place_path(): bits of lanes, and the width of a pixel, user's units.
+  bool walks = false;
+  uint32_t after_diffuse = 0, leaving = 0;
+  Floats pixel;
+  bool shares = false; // diffuse and glossy shares of light are wanted
 };
 
 // The lobes, with normals and emission on the viewer's side; by build_lobes().
@@ -99,19 +103,31 @@ public:
   void move(uint32_t lane, const Hit &hit);
   // Turns a lane to be seen along a view direction of any length.
   void view_along(uint32_t lane, const glm::dvec3 &view) { put(view, hits_.d, lane); }
+  // Lets surfaces send paths below them.
+  void walk_below() { materials_.walks = true; }
+  // Describes the path of a lane to lobes that send paths below: whether a diffuse lobe has scattered it, whether it comes from
+  // below, and the width of a pixel where it meets the surface, in the user's units.
+  void place_path(uint32_t lane, bool after_diffuse, bool leaving, float pixel) {
+    materials_.after_diffuse |= uint32_t{after_diffuse} << lane;
+    materials_.leaving |= uint32_t{leaving} << lane;
+    materials_.pixel[lane] = pixel;
+  }
   // Lets nodes look around by these rays, which must outlive the stage.
   void look_by(NodeRays &rays) { looking_.rays = &rays; }
   // Computes the surfaces of all lanes.
   void find();
   // Evaluates the nodes of the material, if it has any. view_of(lane): returns the View of a lane.
   template <class ViewOf> void ask_nodes(ViewOf &&view_of) {
-    if (materials_.material[0]->fixed())
+    const Material &material = *materials_.material[0];
+    if (material.fixed() || (materials_.leaving != 0 && !material.bends_exits))
       return;
     View views[kBlockLanes];
     for (uint32_t lane = 0; lane < count_; ++lane)
       views[lane] = view_of(lane);
     run_nodes(views);
   }
+  // Returns the width of a pixel at the end of a path of length `way`, in the user's units.
+  float pixel_width(double way) const { return float(2.0 * (cone_.base + way * cone_.spread) / scene_.normalisation.scale); }
   // Returns the view of a lane at the end of a path of length `way`.
   View view(uint32_t lane, double way, const LightPath<float> &path) const {
     return {.wo = get(surfaces_.wo, lane), .footprint = float(cone_.base + way * cone_.spread), .path = path};

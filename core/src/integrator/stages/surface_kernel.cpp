@@ -78,7 +78,11 @@ void build(const SurfaceBlock &surfaces, const MaterialBlock &materials, LobeBlo
     bsdf.shares = materials.shares;
     find_lobes<F>(materials.material + first, NodeValues{materials, first}, some(materials.holes, first),
                   load3(surfaces.wo, first), load3(surfaces.ns, first), load3(surfaces.ng, first), bsdf,
-                  some(materials.seen_by_camera, first));
+                  {.seen_by_camera = some(materials.seen_by_camera, first),
+                   .after_diffuse = some(materials.after_diffuse, first),
+                   .leaving = some(materials.leaving, first),
+                   .walks = materials.walks,
+                   .pixel = load(materials.pixel + first)});
     store3(lobes.ns, first, bsdf.ns);
     store3(lobes.ng, first, bsdf.ng);
     store3(lobes.emission, first, bsdf.emission);

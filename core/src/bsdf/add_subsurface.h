@@ -1,0 +1,56 @@
+// Light below a surface as a lobe of a hit, and the white surface by which it leaves.
+#pragma once
+
+#include "bsdf/bsdf.h"
+#include "bsdf/matte.h"
+#include "bsdf/normals.h"
+#include "bsdf/subsurface_lobe.h"
+
+namespace lancer {
+
+// Adds the channels that light enters by. Returns the weight of the others, which leave where they enter: all if the integrator
+// walks nowhere, those of a small radius, and after a diffuse scattering those of Burley's profile, before 5.0 of every method.
+template <class F> LANCER_LANE Vec3<F> add_subsurface(Bsdf<F> &bsdf, uint8_t frame, SubsurfaceInputs<F> in) {
+  using V = Vec3<F>;
+  if (!bsdf.walks)
+    return in.weight;
+  const bool burley = (in.option & kMethodBits) == static_cast<uint32_t>(SubsurfaceMethod::Burley);
+  const F zero(0.0f);
+  const F least = in.option & kQuarterPixel ? max(F(0.25f) * bsdf.pixel, F(kSmallestRadius)) : F(kSmallestRadius);
+  const MaskOf<F> walks = uniform<F>(in.rules >= Rules::Blender50 && !burley) | !bsdf.after_diffuse;
+  const auto deep = [&](F radius, F value) { return select(walks & (radius >= least), value, zero); };
+  const V entering{deep(in.radius.x, in.weight.x), deep(in.radius.y, in.weight.y), deep(in.radius.z, in.weight.z)};
+  const V matt = in.weight - entering;
+  in.radius = {deep(in.radius.x, in.radius.x), deep(in.radius.y, in.radius.y), deep(in.radius.z, in.radius.z)};
+  in.weight = entering;
+  bsdf.add(make_subsurface(in, frame));
+  return matt;
+}
+
+// Replaces all lobes in leaving lanes by a white diffuse one, about the mean normal of the subsurface lobes.
+template <class F> void leave_below(Bsdf<F> &bsdf) {
+  using V = Vec3<F>;
+  const MaskOf<F> leaving = bsdf.leaving;
+  const V none(F(0.0f)), white(F(1.0f));
+  V n = none;
+  bool dimmed = false;
+  for (int i = 0; i < bsdf.count; ++i) {
+    Lobe<F> &lobe = bsdf.lobes[i];
+    if (is_subsurface(lobe)) {
+      n += abs(mean(lobe.color)) * bsdf.frames[lobe.frame].n;
+      dimmed = dimmed || (lobe.variant & kDimmedExit) != 0;
+    }
+    lobe.color = select(leaving, none, lobe.color);
+  }
+  bsdf.emission = select(leaving, none, bsdf.emission);
+  bsdf.straight = select(leaving, none, bsdf.straight);
+  Lobe<F> exit = make_matte<F>(Matte::BurleyExit, select(leaving, white, none));
+  if (!dimmed)
+    exit.shape = LobeShape::Lambert;
+  exit.frame = add_frame(bsdf, select(leaving, unit_or(n, bsdf.ns), none));
+  if (bsdf.count == kMaxLobes)
+    --bsdf.count;
+  bsdf.add(exit);
+}
+
+} // namespace lancer
