@@ -19,6 +19,8 @@ BUILDERS = {
     "daylight": "rooms.build_daylight",
     "glass_metal": "vitrine.build",
     "product": "vitrine.build_product",
+    "wax": "wax.build",
+    "sun": "sun.build",
     "lights2": "lamps.build_lights2",
     "lights200": "lamps.build_lights200",
     "lights10k": "lamps.build_lights10k",

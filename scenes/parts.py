@@ -208,7 +208,7 @@ def principled(name, **inputs):
             sockets.setdefault(old_key.lower(), sockets[OLD_SOCKETS[old_key].lower()])
     for key, value in inputs.items():
         socket = sockets[key.replace("_", " ").lower()]
-        if hasattr(socket.default_value, "__len__") and len(value) == 3:
+        if socket.type == "RGBA" and len(value) == 3:
             value = (*value, 1.0)
         socket.default_value = value
     if "base_color" in inputs:

@@ -70,6 +70,9 @@ SCENES = (
     _lifelike("daylight", "a million triangles lit through windows, with passes"),
     _lifelike("product", "a product between softboxes, with passes"),
     _lifelike("foliage", "a wood of cut-out leaves, with passes"),
+    # One feature each, which the other scenes lack.
+    Scene("wax", "a head of wax, light below its surface", renderers=("lancer", "cycles")),
+    Scene("sun", "columns under sky and sun", renderers=("lancer", "cycles")),
     # The cost of lamps, compared with each other and left out of the means, which 10 000 lamps would dominate.
     Scene("lights2", "two lamps", rounds=3, reference=0, renderers=("lancer",)),
     Scene("lights10k", "10 000 lamps", samples=4, rounds=3, reference=0, renderers=("lancer",)),

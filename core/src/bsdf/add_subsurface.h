@@ -27,6 +27,15 @@ template <class F> LANCER_LANE Vec3<F> add_subsurface(Bsdf<F> &bsdf, uint8_t fra
   return matt;
 }
 
+// Returns the lanes in which light may enter.
+template <class F> LANCER_LANE MaskOf<F> enters(const Bsdf<F> &bsdf) {
+  MaskOf<F> there = uniform<F>(false);
+  for (int i = 0; i < bsdf.count; ++i)
+    if (is_subsurface(bsdf.lobes[i]))
+      there = there | (bsdf.lobes[i].probability > F(0.0f));
+  return there;
+}
+
 // Replaces all lobes in leaving lanes by a white diffuse one, about the mean normal of the subsurface lobes.
 template <class F> void leave_below(Bsdf<F> &bsdf) {
   using V = Vec3<F>;

@@ -12,6 +12,8 @@ namespace {
 
 // Density of directions below which a lobe is so wide that Cycles bevels nothing behind it.
 constexpr float kSharpDensity = 8.0f;
+// Number of walks below surfaces that fill the lanes of the stage.
+constexpr size_t kWorthWalking = 512;
 
 } // namespace
 
@@ -21,7 +23,7 @@ void PathIntegrator::run(std::span<const SampleAddress> addresses, std::span<Sam
   film_.begin(addresses, results, trace);
   start(addresses, results);
   const auto gathered = [&](uint32_t sample) { return film_.gathered(sample); };
-  for (uint32_t turn = 0; !queue_.paths.empty() && !settings_.cancelled(); ++turn) {
+  for (uint32_t turn = 0; !(queue_.paths.empty() && below_.empty()) && !settings_.cancelled(); ++turn) {
     // Find the next hit of every path.
     find_hits();
     // Add the light that rays run into, light the hits, and sample the next direction of each path.
@@ -94,9 +96,9 @@ void PathIntegrator::shade() {
   leave();
 }
 
-// Walks below surfaces, and shades the places where paths leave them.
+// Walks below surfaces, and shades the places where paths leave them. Few walks wait for others, as long as there are paths.
 void PathIntegrator::leave() {
-  if (below_.empty())
+  if (below_.empty() || (below_.size() < kWorthWalking && !next_.paths.empty()))
     return;
   counts_.bounce += walk_->walk(walks_);
   const size_t first = queue_.paths.size();
@@ -238,7 +240,8 @@ void PathIntegrator::split() {
   splitting_ = 0;
   const Splits &splits = settings_.splits;
   for (uint32_t lane = 0; lane < surface_.count() && splits.any(); ++lane) {
-    const bool here = !(ends_ >> lane & 1) && !path_of(lane).split && (surface_.lobes().scatters >> lane & 1);
+    const uint32_t scatters = surface_.lobes().scatters | surface_.lobes().enters;
+    const bool here = !(ends_ >> lane & 1) && !path_of(lane).split && (scatters >> lane & 1);
     splitting_ |= uint32_t{here} << lane;
     lights_[lane] = here ? splits.lights : 1u;
     paths_[lane] = here ? splits.paths : 1u;
@@ -462,9 +465,11 @@ void PathIntegrator::enter(uint32_t lane, uint32_t branch) {
   walk.color = get(block.below_color, lane);
   walk.radius = get(block.below_radius, lane) * float(scene_.normalisation.scale);
   walk.g = block.below_g[lane];
-  walk.pixel = next.sampler.pixel();
-  walk.sample = next.sampler.sample();
-  walk.dimension = next.vertex_dimension();
+  // The numbers of a light sample at this vertex serve the walk.
+  const uint32_t dimension = path.vertex_dimension();
+  walk.u_channel = next.sampler.get1(dimension + kVertexLightChoice);
+  walk.u_distance = next.sampler.get1(dimension + kVertexLight);
+  walk.key = hash_combine(hash_combine(next.sampler.pixel(), next.sampler.sample()), next.vertex_dimension());
   walk.instance = hit.instance;
 }
 

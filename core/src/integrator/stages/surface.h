@@ -62,6 +62,7 @@ struct alignas(64) LobeBlock {
   uint32_t used = 0;
   uint32_t transmits = 0; // some lobe scatters light to the other side
   uint32_t scatters = 0;  // into more than single directions
+  uint32_t enters = 0;    // some light enters the surface, to walk below it
   uint32_t sheets = 0;    // some light passes a smooth sheet straight
   bool shares = false;    // as in MaterialBlock
 };

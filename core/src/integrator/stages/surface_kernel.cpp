@@ -69,7 +69,7 @@ LANCER_LANE F share_passing(const MaterialBlock &materials, int first, const Bsd
 }
 
 void build(const SurfaceBlock &surfaces, const MaterialBlock &materials, LobeBlock &lobes) {
-  lobes.transmits = lobes.scatters = lobes.sheets = 0;
+  lobes.transmits = lobes.scatters = lobes.enters = lobes.sheets = 0;
   lobes.shares = materials.shares;
   for (int first = 0; first < kBlockLanes; first += kLanes) {
     if (!(lobes.used >> first))
@@ -93,6 +93,8 @@ void build(const SurfaceBlock &surfaces, const MaterialBlock &materials, LobeBlo
     }
     lobes.transmits |= placed_bits(bsdf.transmits, first);
     lobes.scatters |= placed_bits(bsdf.smooth, first);
+    if (materials.walks)
+      lobes.enters |= placed_bits(enters(bsdf), first) & lobes.used;
   }
 }
 

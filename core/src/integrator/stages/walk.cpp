@@ -4,6 +4,7 @@
 #include "sampling/sobol.h"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 
 namespace lancer {
@@ -33,86 +34,141 @@ bool WalkStage::counts(size_t ray, const Hit &hit) {
   return false;
 }
 
-void WalkStage::load(Walk &walk, size_t number, WalkBlock &block, uint32_t lane) {
-  walk_of_[size_t(&block - blocks_.data()) * kBlockLanes + lane] = number;
-  put(walk.ray.o, block.p, lane);
-  put(walk.ray.o, block.begin, lane);
-  put(glm::vec3(walk.ray.d), block.d, lane);
-  put(walk.n, block.n, lane);
-  put(walk.beta, block.beta, lane);
-  put(walk.color, block.color, lane);
-  put(walk.radius, block.radius, lane);
-  block.g[lane] = walk.g;
-  block.method[lane] = uint32_t(walk.method);
-  block.opposite[lane] = 0.0f;
-  block.pixel[lane] = walk.pixel;
-  block.sample[lane] = walk.sample;
-  block.dimension[lane] = walk.dimension;
-  block.steps[lane] = 0;
+// lane: over all blocks.
+void WalkStage::load(const Walk &walk, size_t number, uint32_t lane) {
+  walk_of_[lane] = number;
+  WalkBlock &block = blocks_[lane / kBlockLanes];
+  const uint32_t at = lane % kBlockLanes;
+  put(walk.ray.o, block.p, at);
+  put(glm::vec3(walk.ray.d), block.d, at);
+  put(walk.n, block.n, at);
+  put(walk.beta, block.beta, at);
+  put(walk.color, block.color, at);
+  put(walk.radius, block.radius, at);
+  block.g[at] = walk.g;
+  block.method[at] = uint32_t(walk.method);
+  block.u_channel[at] = walk.u_channel;
+  block.u_distance[at] = walk.u_distance;
+  block.key[at] = walk.key;
+}
+
+// Fills the free lanes with the next walks.
+void WalkStage::fill(std::span<const Walk> walks, size_t &next) {
+  for (size_t number = 0; number < blocks_.size() && next < walks.size(); ++number) {
+    WalkBlock &block = blocks_[number];
+    uint32_t fresh = 0;
+    for (uint32_t lane = 0; lane < kBlockLanes && next < walks.size(); ++lane)
+      if (!(block.walking >> lane & 1)) {
+        load(walks[next], next, uint32_t(number * kBlockLanes + lane));
+        fresh |= 1u << lane;
+        ++next;
+      }
+    if (fresh != 0)
+      kernel_.begin(block, fresh);
+    block.walking |= fresh;
+  }
+}
+
+namespace {
+
+void move_lane(WalkBlock &block, uint32_t to, const WalkBlock &other, uint32_t from) {
+  for (int axis = 0; axis < 3; ++axis) {
+    block.p[axis][to] = other.p[axis][from];
+    for (const auto member :
+         {&WalkBlock::d, &WalkBlock::n, &WalkBlock::sigma_t, &WalkBlock::sigma_s, &WalkBlock::light, &WalkBlock::densities})
+      (block.*member)[axis][to] = (other.*member)[axis][from];
+  }
+  for (const auto member :
+       {&WalkBlock::depth, &WalkBlock::g, &WalkBlock::guided, &WalkBlock::length, &WalkBlock::log_length, &WalkBlock::opposite})
+    (block.*member)[to] = (other.*member)[from];
+  for (const auto member : {&WalkBlock::hero, &WalkBlock::key, &WalkBlock::steps})
+    (block.*member)[to] = (other.*member)[from];
+}
+
+} // namespace
+
+// Moves the walks of the last blocks into free lanes of the first ones, so that few blocks are left at the end. The numbers of
+// a walk do not depend on its lane.
+void WalkStage::close_ranks() {
+  size_t last = blocks_.size();
+  for (size_t first = 0; first < last; ++first) {
+    WalkBlock &block = blocks_[first];
+    for (uint32_t lane = 0; lane < kBlockLanes; ++lane) {
+      if (block.walking >> lane & 1)
+        continue;
+      while (last > first + 1 && blocks_[last - 1].walking == 0)
+        --last;
+      if (last == first + 1)
+        return;
+      WalkBlock &other = blocks_[last - 1];
+      const auto from = uint32_t(std::countr_zero(other.walking));
+      move_lane(block, lane, other, from);
+      walk_of_[first * kBlockLanes + lane] = walk_of_[(last - 1) * kBlockLanes + from];
+      other.walking &= other.walking - 1;
+      block.walking |= 1u << lane;
+    }
+  }
+}
+
+// Finds the surfaces on the ways of all walking lanes.
+void WalkStage::look(std::span<const Walk> walks) {
+  rays_.clear();
+  lane_of_.clear();
+  instance_of_.clear();
+  for (size_t number = 0; number < blocks_.size(); ++number) {
+    const WalkBlock &block = blocks_[number];
+    each_lane(block.walking, [&](uint32_t lane) {
+      const Walk &walk = walks[walk_of_[number * kBlockLanes + lane]];
+      Ray &ray = rays_.emplace_back();
+      ray.o = get(block.p, lane);
+      ray.d = glm::dvec3(get(block.d, lane));
+      ray.tmax = double(block.reach[lane]);
+      // The first ray starts on the surface, the others within the object.
+      if (block.steps[lane] == 0) {
+        ray.skip_instance = walk.ray.skip_instance;
+        ray.skip_primitive = walk.ray.skip_primitive;
+      }
+      lane_of_.push_back(uint32_t(number * kBlockLanes + lane));
+      instance_of_.push_back(walk.instance);
+    });
+  }
+  hits_.assign(rays_.size(), {});
+  scene_.accelerator->closest_hit(rays_, hits_, *this);
+  for (size_t i = 0; i < rays_.size(); ++i)
+    blocks_[lane_of_[i] / kBlockLanes].met[lane_of_[i] % kBlockLanes] = hits_[i].valid() ? hits_[i].t : kInfinite;
 }
 
 uint64_t WalkStage::walk(std::span<Walk> walks) {
   const auto profiles = std::stable_partition(walks.begin(), walks.end(),
                                               [](const Walk &walk) { return walk.method != SubsurfaceMethod::Burley; });
   uint64_t count = leave_by_profile({profiles, walks.end()});
-  const size_t total = size_t(profiles - walks.begin());
-  blocks_.resize(std::min(kBlocks, (total + kBlockLanes - 1) / kBlockLanes));
+  const std::span<Walk> random(walks.begin(), profiles);
+  blocks_.resize(std::min(kBlocks, (random.size() + kBlockLanes - 1) / kBlockLanes));
   walk_of_.resize(blocks_.size() * kBlockLanes);
   for (WalkBlock &block : blocks_)
     block.walking = 0;
-  size_t next = 0;
-  for (;;) {
-    rays_.clear();
-    lane_of_.clear();
-    instance_of_.clear();
-    for (size_t number = 0; number < blocks_.size(); ++number) {
-      WalkBlock &block = blocks_[number];
-      // Fill the free lanes with the next walks.
-      uint32_t fresh = 0;
-      for (uint32_t lane = 0; lane < kBlockLanes && next < total; ++lane)
-        if (!(block.walking >> lane & 1)) {
-          load(walks[next], next, block, lane);
-          fresh |= 1u << lane;
-          ++next;
-        }
-      if (fresh != 0)
-        kernel_.medium(block, fresh);
-      block.walking |= fresh;
-      if (block.walking == 0)
-        continue;
-      kernel_.step(block);
-      each_lane(block.walking, [&](uint32_t lane) {
-        const Walk &walk = walks[walk_of_[number * kBlockLanes + lane]];
-        Ray &ray = rays_.emplace_back();
-        ray.o = get(block.p, lane);
-        ray.d = glm::dvec3(get(block.d, lane));
-        ray.tmax = block.reach[lane];
-        // The first ray starts on the surface, the others within the object.
-        if (block.steps[lane] == 0) {
-          ray.skip_instance = walk.ray.skip_instance;
-          ray.skip_primitive = walk.ray.skip_primitive;
-        }
-        lane_of_.push_back(uint32_t(number * kBlockLanes + lane));
-        instance_of_.push_back(walk.instance);
-      });
-    }
+  for (size_t next = 0;;) {
+    if (next < random.size())
+      fill(random, next);
+    else
+      close_ranks();
+    for (WalkBlock &block : blocks_)
+      if (block.walking != 0)
+        kernel_.step(block);
+    look(random);
     if (rays_.empty())
       return count;
     count += rays_.size();
-    hits_.assign(rays_.size(), {});
-    scene_.accelerator->closest_hit(rays_, hits_, *this);
-    for (size_t i = 0; i < rays_.size(); ++i)
-      blocks_[lane_of_[i] / kBlockLanes].met[lane_of_[i] % kBlockLanes] = hits_[i].valid() ? hits_[i].t : kInfinite;
-    for (WalkBlock &block : blocks_)
+    for (WalkBlock &block : blocks_) {
+      block.left = 0;
       if (block.walking != 0)
         kernel_.advance(block);
-      else
-        block.left = 0;
+    }
     for (size_t i = 0; i < rays_.size(); ++i) {
       const WalkBlock &block = blocks_[lane_of_[i] / kBlockLanes];
       const uint32_t lane = lane_of_[i] % kBlockLanes;
       if (block.left >> lane & 1)
-        end(walks[walk_of_[lane_of_[i]]], block, lane, hits_[i], rays_[i]);
+        end(random[walk_of_[lane_of_[i]]], block, lane, hits_[i], rays_[i]);
     }
   }
 }
@@ -120,7 +176,7 @@ uint64_t WalkStage::walk(std::span<Walk> walks) {
 // Ends a walk at the hit of a ray from inside: the path meets the surface as if it came from outside.
 void WalkStage::end(Walk &walk, const WalkBlock &block, uint32_t lane, const Hit &hit, const Ray &ray) {
   walk.hit = hit;
-  walk.beta = get(block.beta, lane);
+  walk.beta = get(block.throughput, lane);
   walk.ray = ray;
   walk.ray.o = ray.o + 2.0 * hit.t * ray.d;
   walk.ray.d = -ray.d;
@@ -138,15 +194,12 @@ uint64_t WalkStage::leave_by_profile(std::span<Walk> walks) {
   std::vector<Probe> probes;
   rays_.clear();
   instance_of_.clear();
-  const auto number = [](const Walk &walk, uint32_t which) {
-    const uint32_t key = hash_combine(hash_combine(hash_combine(walk.pixel, walk.sample), walk.dimension), which);
-    return float(key >> 8) * 0x1p-24f;
-  };
+  const auto number = [](const Walk &walk, uint32_t which) { return float(hash_combine(walk.key, which) >> 8) * 0x1p-24f; };
   for (const Walk &walk : walks) {
     Probe probe;
     const Frame<float> at(walk.n);
-    float u = number(walk, 0);
-    const float v = number(walk, 1);
+    float u = walk.u_distance;
+    const float v = walk.u_channel;
     // Half of the rays go along the normal, a quarter along each tangent.
     const int axis = u < 0.5f ? 0 : u < 0.75f ? 1 : 2;
     u = axis == 0 ? 2.0f * u : axis == 1 ? 4.0f * (u - 0.5f) : 4.0f * (u - 0.75f);
@@ -217,7 +270,7 @@ uint64_t WalkStage::leave_by_profile(std::span<Walk> walks) {
       sum += (weights.back().x + weights.back().y + weights.back().z) / 3.0f;
     }
     // Choose one of them by its weight.
-    float u = number(walk, 2) * sum;
+    float u = number(walk, 0) * sum;
     for (size_t k = 0; k < hits.size(); ++k) {
       const float weight = (weights[k].x + weights[k].y + weights[k].z) / 3.0f;
       if (weight > 0.0f && (u < weight || k + 1 == hits.size())) {

@@ -18,45 +18,53 @@ namespace lancer {
 
 // A walk: its entry, and where it ends.
 struct Walk {
-  // In. The ray from the entry into the object; of Burley's profile, to the outside of the surface.
+  // In. The ray from the entry into the object; of Burley's profile, its origin alone.
   Ray ray;
   glm::vec3 n{0.0f};    // normal of the entry, against the walk, unit
   glm::vec3 beta{0.0f}; // throughput, with the colour of the surface; out: throughput at the end
   glm::vec3 color{0.0f}, radius{0.0f};
   float g = 0.0f;
   SubsurfaceMethod method = SubsurfaceMethod::RandomWalk;
-  uint32_t pixel = 0, sample = 0, dimension = 0; // address of its numbers
+  // The number that chooses the channel to walk for, and that of the first distance: evenly spread over the samples of a pixel.
+  float u_channel = 0.0f, u_distance = 0.0f;
+  uint32_t key = 0; // of its other numbers
   uint32_t instance = kNone;
   bool inside = false; // the walk is on the outer side of the surface
   // Out. The hit on the ray that ends the walk, from outside.
   Hit hit;
 };
 
-// The walks of a block: their places, directions, media and numbers, and what a step has found out for its own weight.
+// The walks of a block: their places, directions and media, and each step's part of their weights. A walk samples distances for
+// one channel, its hero. light: the light of each channel over the hero's density of the steps so far, densities: the density
+// of each channel over that of the hero, times its probability to be the hero; light over the sum of densities is the
+// throughput (the balance heuristic over whole walks).
 struct alignas(64) WalkBlock {
-  Doubles p[3], begin[3];                // the place of a walk, and of its entry
-  Floats d[3], n[3];                     // of travel; outward normal of the entry
-  Floats sigma_t[3], albedo[3], beta[3]; // of the medium; throughput
-  Floats g, length, log_length;          // mean cosine; diffusion_length() with log((v + 1) / (v - 1))
-  Floats opposite;                       // distance to the other side along -n, 0 if none is near
-  Words pixel, sample, dimension, steps; // steps taken
-  // In of medium(): of the surface.
-  Floats color[3], radius[3];
+  // Kept from step to step.
+  Doubles p[3];
+  Floats d[3], n[3], depth;                 // of travel; normal of the entry, and the depth below its plane
+  Floats sigma_t[3], sigma_s[3], g, guided; // of the medium; probability of a direction towards the surface
+  Floats length, log_length;                // diffusion_length() with log((v + 1) / (v - 1))
+  Floats opposite;                          // distance to the other side along -n, 0 if none is near
+  Floats light[3], densities[3];
+  Words hero, key, steps; // channel; steps taken
+  // In of begin(): of the surface, and the numbers of a walk.
+  Floats beta[3], color[3], radius[3], u_channel, u_distance;
   Words method;
   // Of the current step.
-  Doubles t, reach;                                  // distance to travel; how far to look for a surface
-  Floats channel[3];                                 // probability of each channel
+  Floats t, reach;                                   // distance to travel; how far to look for a surface
   Floats forward, backward, stretch, backward_share; // factors of the guided densities, see walk_kernel.cpp
   // Of its ray: distance to the surface, infinite if it meets none.
   Doubles met;
+  // Out of advance(), in lanes that have left.
+  Floats throughput[3];
   // Bits of lanes.
   uint32_t walking = 0; // in: lanes with a walk; out of advance(): those that go on
   uint32_t left = 0;    // out of advance(): lanes whose walk has reached the surface
 };
 
 struct WalkKernel {
-  // Sets the medium of these lanes from color, radius, g and method.
-  void (*medium)(WalkBlock &block, uint32_t lanes);
+  // Begins the walks of these lanes.
+  void (*begin)(WalkBlock &block, uint32_t lanes);
   // Samples direction and distance of the next step of all walking lanes.
   void (*step)(WalkBlock &block);
   // Moves all walking lanes to the end of their step.
@@ -73,7 +81,10 @@ public:
 
 private:
   bool counts(size_t ray, const Hit &hit) override;
-  void load(Walk &walk, size_t number, WalkBlock &block, uint32_t lane);
+  void load(const Walk &walk, size_t number, uint32_t lane);
+  void fill(std::span<const Walk> walks, size_t &next);
+  void close_ranks();
+  void look(std::span<const Walk> walks);
   void end(Walk &walk, const WalkBlock &block, uint32_t lane, const Hit &hit, const Ray &ray);
   uint64_t leave_by_profile(std::span<Walk> walks);
 
