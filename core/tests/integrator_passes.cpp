@@ -12,9 +12,27 @@ namespace {
 lancer_principled plain_principled() {
   lancer_principled p = {};
   p.rules = LANCER_RULES_BLENDER_45;
-  for (lancer_parameter *input : {&p.metallic, &p.diffuse_roughness, &p.specular, &p.anisotropic, &p.anisotropic_rotation,
-                                  &p.transmission, &p.transmission_roughness, &p.coat, &p.coat_roughness, &p.coat_normal,
-                                  &p.sheen, &p.emission, &p.film_thickness, &p.thin_wall, &p.wall_scattering, &p.wall_forward})
+  for (lancer_parameter *input : {&p.metallic,
+                                  &p.diffuse_roughness,
+                                  &p.specular,
+                                  &p.anisotropic,
+                                  &p.anisotropic_rotation,
+                                  &p.transmission,
+                                  &p.transmission_roughness,
+                                  &p.coat,
+                                  &p.coat_roughness,
+                                  &p.coat_normal,
+                                  &p.sheen,
+                                  &p.emission,
+                                  &p.film_thickness,
+                                  &p.thin_wall,
+                                  &p.wall_scattering,
+                                  &p.wall_forward,
+                                  &p.subsurface,
+                                  &p.subsurface_radius,
+                                  &p.subsurface_color,
+                                  &p.subsurface_ior,
+                                  &p.subsurface_anisotropy})
     *input = constant(0.0f);
   p.base_color = p.sheen_tint = p.coat_tint = p.specular_tint = constant(0.8f);
   p.roughness = p.sheen_roughness = constant(0.5f);

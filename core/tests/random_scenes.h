@@ -106,6 +106,7 @@ inline lancer_principled principled(Random &random) {
   p.sheen_tint = constant(1.0f);
   p.transmission_roughness = p.anisotropic = p.anisotropic_rotation = p.coat_normal = p.emission = constant(0.0f);
   p.film_thickness = p.thin_wall = p.wall_scattering = p.wall_forward = constant(0.0f);
+  p.subsurface = p.subsurface_radius = p.subsurface_color = p.subsurface_ior = p.subsurface_anisotropy = constant(0.0f);
   p.film_ior = constant(1.33f);
   return p;
 }

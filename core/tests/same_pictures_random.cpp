@@ -82,6 +82,8 @@ lancer_lobe random_lobe(Dice &dice, const RandomNodes *by, lancer_principled &re
   record.specular_tint = record.sheen_tint = dice.color();
   record.coat_normal = record.emission = parameter(0.0f);
   record.film_thickness = record.thin_wall = record.wall_scattering = record.wall_forward = parameter(0.0f);
+  record.subsurface = record.subsurface_radius = record.subsurface_color = parameter(0.0f);
+  record.subsurface_ior = record.subsurface_anisotropy = parameter(0.0f);
   record.film_ior = parameter(1.33f);
   one.principled = &record;
   return one;

@@ -102,6 +102,8 @@ TEST(SamePictures, Principled) {
       record.sheen = record.anisotropic = record.diffuse_roughness = parameter(0.0f);
     record.coat_normal = record.emission = record.film_thickness = parameter(0.0f);
     record.thin_wall = record.wall_scattering = record.wall_forward = parameter(0.0f);
+    record.subsurface = record.subsurface_radius = record.subsurface_color = parameter(0.0f);
+    record.subsurface_ior = record.subsurface_anisotropy = parameter(0.0f);
     record.film_ior = parameter(1.33f);
     lancer_lobe one = lobe(LANCER_PRINCIPLED, 1.0f);
     one.rules = record.rules;
@@ -116,6 +118,29 @@ TEST(SamePictures, Principled) {
   stand.render();
   EXPECT_GT(stand.vertices, 0u);
   EXPECT_EQ(stand.hash.value(), 0x7530525789197742u);
+}
+
+// Each method, with and without scattering ahead.
+TEST(SamePictures, LightBelowSurfaces) {
+  Stand stand;
+  stand.floor();
+  for (uint32_t i = 0; i < 8; ++i) {
+    lancer_lobe wax = lobe(LANCER_SUBSURFACE, 1.0f, 0.5f);
+    wax.color = parameter(0.875f, 0.5f, 0.25f);
+    wax.edge = parameter(1.0f, 0.5f, 0.125f);
+    wax.ior = parameter(1.375f);
+    wax.option = i % 4;
+    wax.rules = i < 4 ? LANCER_RULES_BLENDER_52 : LANCER_RULES_BLENDER_4;
+    wax.anisotropy = parameter(i % 2 ? 0.5f : 0.0f);
+    stand.place(LANCER_SPHERE, stand.material({wax, lobe(LANCER_LAMBERT, 0.125f)}), 0.75 * (i % 4) - 1.25, 0.5 * (i / 4),
+                0.5 * (i / 4) + 0.25, 0.375);
+  }
+  stand.add(lamp(LANCER_AREA, 0, -3, 4, 8));
+  stand.sky(0.25f, 0.25f, 0.25f);
+  stand.camera = make_camera(30, 20);
+  stand.commit();
+  stand.render();
+  EXPECT_EQ(stand.hash.value(), 0u);
 }
 
 TEST(SamePictures, MathsOfNodes) {

@@ -135,10 +135,14 @@ Mean ball_under_sky(const lancer_lobe &lobe, double width, uint32_t samples = 64
   return {mean, std::sqrt(std::max(squares / count - mean * mean, 0.0) / count)};
 }
 
+// The radii give each method a mean free path of 1/2.
 TEST(SubsurfacePictures, AWhiteBallVanishesInWhiteLight) {
-  for (const uint32_t method : {LANCER_SUBSURFACE_RANDOM_WALK_LEGACY, LANCER_SUBSURFACE_SKIN, LANCER_SUBSURFACE_RANDOM_WALK})
+  const float twice_pi = 2.0f * std::numbers::pi_v<float>, of_skin = 0.5f / std::sqrt(3e-6f);
+  for (const auto &[method, radius] :
+       {std::pair(LANCER_SUBSURFACE_RANDOM_WALK_LEGACY, twice_pi), std::pair(LANCER_SUBSURFACE_SKIN, of_skin),
+        std::pair(LANCER_SUBSURFACE_RANDOM_WALK, 0.5f)})
     for (const float g : {0.0f, 0.8f}) {
-      const Mean got = ball_under_sky(wax(method, 1.0f, 0.5f, g), 1.6);
+      const Mean got = ball_under_sky(wax(method, 1.0f, radius, g), 1.6);
       // Walks of more than 256 steps are lost, and each step takes a millionth: less than a thousandth in all, as a walk of
       // this radius takes about ten steps.
       EXPECT_NEAR(got.value, 1.0, 4.0 * got.error + 1e-3) << method << " " << g << " " << got.error;
