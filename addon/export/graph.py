@@ -20,6 +20,7 @@ from . import colors, coordinates, curves, ies, looking, maths, normals, pattern
 from .arithmetic import THIRDS, triple
 from .node_builder import UNKNOWN, NodeBuilder, in_three
 from .resolved import ShaderTree
+from .shader_cache import Sources
 from .sockets import find
 from .walk import Site, Walker
 
@@ -45,6 +46,7 @@ class NodeGraph(NodeBuilder):
         self.is_of_lamp = False  # whether the nodes are seen at a point of a lamp
         # For a lamp: a function that returns four numbers by the name of an ObjectAttribute or of LAMP_FACTS.
         self.lamp_value = None
+        self.texts = set()  # (identity, contents) of the texts that the nodes read
         self.reads_layer = False  # whether the nodes read properties of the view layer, the scene or its world
         self.reads_time = False  # whether the nodes read the frame or the time
         self.material_index = 0  # of the owner; 0 if the owner is no material
@@ -54,6 +56,11 @@ class NodeGraph(NodeBuilder):
         self._tree = None  # the ShaderTree that is read
         self._active = set()
         self._is_ahead = False
+
+    @property
+    def sources(self):
+        """The Sources that the nodes read."""
+        return Sources(frozenset(self.objects), self.reads_layer, self.reads_time, frozenset(self.texts))
 
     def tree_of(self, block):
         """Return the nodes of a material, world or light as Cycles reads them; None without any."""

@@ -1,5 +1,6 @@
 """Images in their own bit depth, exported once however many materials use them."""
 
+import hashlib
 import os
 
 import bpy
@@ -18,7 +19,7 @@ _WHITE = 65535.0
 _ASSOCIATED_FORMATS = ("OPEN_EXR", "OPEN_EXR_MULTILAYER", "HDR")  # formats that store colour multiplied by alpha
 
 
-# Replaces images that are not used any more, so that the others keep their numbers.
+# Takes the place of an image that is not used any more, until another one gets its number.
 _NOTHING = snapshot.Image(name="nothing", texels=np.zeros((1, 1, 1), np.uint8))
 
 
@@ -28,20 +29,22 @@ class Images:
     def __init__(self, obey=None, kept=None):
         """obey is called before each file and raises Cancelled if the user cancels. kept: the Kept of earlier frames."""
         self.list = []
+        self.placed = 0  # images so far, those included that are not used any more
         self.obey = obey
         self._kept = kept
         self._ranges = {}
+        self._tables = {}
+        self._free = set()  # numbers
 
     def numbers(self, image, user, tell):
         """Return (first, count) of a Blender image, one for each tile; None if it cannot be read. tell(text, key, severity)."""
         path = _frame_path(image, user, tell)
         key = (identity(image), image.colorspace_settings.name, image.alpha_mode, path)
         if key not in self._ranges:
-            first = len(self.list)
             with main_thread.obeying(self.obey):
                 read = _read_all if self._kept is None else self._kept.pictures(_read_all)
-                self.list += read(image, path, tell)
-            self._ranges[key] = (first, len(self.list) - first) if len(self.list) > first else None
+                pictures = read(image, path, tell)
+            self._ranges[key] = (self.repeat(pictures), len(pictures)) if pictures else None
         if self._ranges[key] is None:
             tell(
                 f"image '{image.name}' has no pixels ({path or image.filepath or 'empty'}), magenta is used",
@@ -50,19 +53,35 @@ class Images:
         return self._ranges[key]
 
     def repeat(self, pictures):
-        """Append images, even known ones, so that their numbers are consecutive; return the first number."""
-        self.list += pictures
-        return len(self.list) - len(pictures)
+        """Add images, even known ones, so that their numbers are consecutive; return the first number."""
+        numbers = range(len(self.list), len(self.list) + len(pictures))
+        for number in sorted(self._free):
+            if self._free.issuperset(range(number, number + len(pictures))):
+                numbers = range(number, number + len(pictures))
+                break
+        self._free.difference_update(numbers)
+        self.list[numbers.start : numbers.stop] = pictures
+        self.placed += len(pictures)
+        return numbers.start
+
+    def table(self, texels):
+        """Return the number of an image with these texels, (rows, columns, channels) of float32. Equal tables share one."""
+        key = texels.shape, hashlib.sha256(texels.tobytes()).digest()
+        if key not in self._tables:
+            self._tables[key] = self.repeat([snapshot.Image(name="table", texels=texels, alpha=AlphaMode.CHANNEL_PACKED)])
+        return self._tables[key]
 
     def forget(self, changed, used):
         """Drop the images whose identity is in changed and those whose number is not in used."""
         for key, found in list(self._ranges.items()):
             if key[0] in changed or found is not None and found[0] not in used:
                 del self._ranges[key]
+        self._tables = {key: number for key, number in self._tables.items() if number in used}
         kept = {number for found in self._ranges.values() if found is not None for number in range(found[0], sum(found))}
         for number in range(len(self.list)):
             if number not in kept and number not in used:
                 self.list[number] = _NOTHING
+                self._free.add(number)
 
 
 class NoPictures:
@@ -72,6 +91,9 @@ class NoPictures:
         return 0, 1
 
     def repeat(self, pictures):
+        return 0
+
+    def table(self, texels):
         return 0
 
 

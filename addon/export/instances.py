@@ -1,6 +1,5 @@
 """All visible entries of the depsgraph: each mesh once, a table of instances, and the lights."""
 
-import functools
 from array import array
 from typing import NamedTuple
 
@@ -8,7 +7,6 @@ import bpy
 import numpy as np
 
 from ..bindings.snapshot import InstanceTable
-from ..host.by_scene import identity
 from ..messages.severity import Severity
 from .apart import read_infos
 from .flat import report_flat
@@ -21,11 +19,10 @@ from .unsupported import check_hair
 _SHOWN_AS_MESH = {"CURVE", "FONT", "META", "SURFACE"}
 # Types without a surface. Blender itself draws strokes over the image.
 _SHOWS_NOTHING = {"ARMATURE", "CAMERA", "EMPTY", "GPENCIL", "GREASEPENCIL", "LATTICE", "LIGHT_PROBE", "SPEAKER"}
-# Before 4.5 the visibility of an instancer does not apply to its lights.
 # Before 5.0 foreach_get over all entries leaks the temporary object with the mesh of a text object, if it is the first entry.
 _LEAKS_FIRST = bpy.app.version < (5, 0)
 _POLL_EVERY = 256
-# Poll more often for single objects, each of which may have a material to read.
+# Poll more often for single objects and lamps, each of which may have nodes to read.
 _POLL_EVERY_OBJECT = 16
 
 
@@ -64,14 +61,15 @@ class Instances:
     There may be millions of entries: only numbers are stored for each, and all matrices are read in one call.
     """
 
-    def __init__(self, depsgraph, materials, messages, kept=None, parts=None, space=None):
-        """space: a SpaceView3D, whose local view and filters exclude objects."""
+    def __init__(self, depsgraph, materials, messages, shaders, kept=None, parts=None, space=None):
+        """shaders: the ShaderCache of lamps. space: a SpaceView3D, whose local view and filters exclude objects."""
         self.depsgraph = depsgraph
         self.messages = messages
         self.lights = []
+        self.has_lamp_instances = False
         self._space = space
-        self._parts = parts
-        self._reader = AttributeReader(depsgraph, messages)
+        self._shaders = shaders
+        self._reader = AttributeReader(depsgraph)
         self._objects = Objects(depsgraph, materials, messages, kept, parts)
         self._rows = {}
         self._narrowed = {}
@@ -104,7 +102,7 @@ class Instances:
                 if number == 0:
                     self._first_is_text = thing.type in _SHOWN_AS_MESH
                 if entry.show_self:
-                    self._add_other(thing, entry)
+                    self._add_other(thing, entry, poll)
                 continue
             if thing.modifiers and entry.show_particles:
                 self._check_hair(thing)
@@ -199,12 +197,16 @@ class Instances:
         self.geometries.append(self._geometries.setdefault(key, len(self._geometries)))
         return len(self._names) - 1
 
-    def _add_other(self, thing, entry):
+    def _add_other(self, thing, entry, poll):
         if thing.type == "LIGHT":
+            if len(self.lights) % _POLL_EVERY_OBJECT == 0:
+                poll()
             hidden = None
+            # Before 4.5 the visibility of an instancer does not apply to its lights.
             if LAMPS_ARE_OBJECTS:
                 narrowed = self._narrowed_by(entry.parent) if entry.is_instance else None
                 hidden, _ = self._objects.sight(thing, narrowed)
+            self.has_lamp_instances = self.has_lamp_instances or entry.is_instance
             shine = self._lamp_nodes(thing, entry)
             light = export_light(thing, entry.matrix_world, self.messages, self.depsgraph, hidden, shine)
             if light is not None:
@@ -214,17 +216,13 @@ class Instances:
             self.messages.add(text, f"feature:{thing.type.lower()} object", severity=Severity.LEFT_OUT)
 
     def _lamp_nodes(self, thing, entry):
-        value = functools.partial(self._reader.of_lamp, entry)
-        materials = self._objects.materials
-        if self._parts is None:
-            return export_lamp_nodes(thing, self.messages, materials.images, self.depsgraph, value)
+        def value(name, messages):
+            return self._reader.of_lamp(entry, name, messages)
 
-        def read(messages, images):
+        def read(messages, images, value):
             return export_lamp_nodes(thing, messages, images, self.depsgraph, value)
 
-        # Objects and instances of one lamp may differ in what their nodes read of them.
-        place = identity(thing), tuple(entry.persistent_id) if entry.is_instance else ()
-        return self._parts.shader((thing.data,), self.messages, read, place)
+        return self._shaders.find(thing.data, self.messages, read, thing.name, value)
 
     def _check_hair(self, thing):
         key = thing.original.as_pointer()

@@ -9,11 +9,11 @@ import numpy as np
 from ..bindings import snapshot
 from ..bindings.enums import AreaShape, Falloff, LightKind, Ray
 from ..bindings.shading import NodeRef
-from ..host.by_scene import identity
 from ..messages.severity import Severity
 from .graph import NodeGraph
 from .images import NoPictures
 from .lamp_transforms import area_of, axes_of, cone_stretch, describe_shear, is_flattened, shines_all_around
+from .shader_cache import Sources
 from .surface import emission_of
 from .unsupported import check_linking
 from .visibility import object_hidden_from
@@ -26,10 +26,7 @@ class LampNodes(NamedTuple):
 
     strength: object = (1.0, 1.0, 1.0)
     nodes: tuple = ()
-    objects: frozenset = frozenset()  # as those of a material
-    reads_layer: bool = False
-    reads_time: bool = False
-    owners: frozenset = frozenset()  # more data that it depends on
+    sources: Sources = Sources()
 
 
 def export_lamp_nodes(thing, messages, images, depsgraph=None, value=None):
@@ -38,18 +35,11 @@ def export_lamp_nodes(thing, messages, images, depsgraph=None, value=None):
     if light.node_tree is None or (bpy.app.version < (5, 2) and not light.use_nodes):
         return LampNodes()
     graph = NodeGraph(f"light '{thing.name}'", messages, images, depsgraph, unknown="white")
-    asked = []
-
-    def fact(name):
-        asked.append(name)
-        return value(name)
-
-    graph.is_of_lamp, graph.lamp_value = True, None if value is None else fact
+    graph.is_of_lamp, graph.lamp_value = True, value
     emission = emission_of(graph, graph.tree_of(light), "OUTPUT_LIGHT")
     # Nodes of which no output is left cost nothing.
     nodes = graph.nodes if isinstance(emission, NodeRef) else ()
-    owners = frozenset({identity(thing)} if asked else ())
-    return LampNodes(emission, nodes, frozenset(graph.objects), graph.reads_layer, graph.reads_time, owners)
+    return LampNodes(emission, nodes, graph.sources)
 
 
 def export_light(thing, matrix_world, messages, depsgraph=None, hidden=None, shine=None):

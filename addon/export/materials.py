@@ -12,6 +12,7 @@ from .course_models import PARAMETERS, lobes_of
 from .graph import NodeGraph
 from .images import Images
 from .normals import bump, displacement_height
+from .shader_cache import ShaderCache, Sources
 from .sockets import RULES, output_node
 from .surface import Surface
 from .walk import Site
@@ -31,22 +32,18 @@ _BUMP_WIDTH = 0.1 if bpy.app.version >= (4, 5) else 1.0
 class _Exported(NamedTuple):
     material: snapshot.Material
     attributes: frozenset = frozenset()  # names of the mesh attributes that it reads
-    objects: frozenset = frozenset()  # identities of the objects whose transform it reads
-    reads_layer: bool = False  # see NodeGraph
-    reads_time: bool = False
-    owners: frozenset = frozenset()  # more data that it depends on
+    sources: Sources = Sources()
 
 
 class Materials:
     """The materials that objects use, by number; each is read once."""
 
-    def __init__(self, messages, override=None, images=None, depsgraph=None, parts=None):
-        """parts: the Parts of earlier exports, or None."""
+    def __init__(self, messages, override=None, images=None, depsgraph=None, shaders=None):
+        """shaders: the ShaderCache of earlier exports; None starts one."""
         self.messages = messages
         self.override = override
-        self.images = Images() if images is None else images
         self.depsgraph = depsgraph
-        self._parts = parts
+        self._shaders = ShaderCache(Images() if images is None else images) if shaders is None else shaders
         self.list = []
         self._numbers = {}
         self._attributes = []
@@ -65,13 +62,10 @@ class Materials:
         return self._numbers[key]
 
     def _read(self, material, asker):
-        if self._parts is None:
-            return _export(material, self.messages, asker, self.images, self.depsgraph)
-
-        def read(messages, images):
+        def read(messages, images, value):
             return _export(material, messages, asker, images, self.depsgraph)
 
-        return self._parts.shader((material,), self.messages, read)
+        return self._shaders.find(material, self.messages, read, asker)
 
     def tell_apart(self, numbers):
         """Whether one of these materials reads an object's colour or random number."""
@@ -120,7 +114,7 @@ def _export(material, messages, asker, images, depsgraph):
     common["flags"] |= values.pop("flags", 0)
     common["ambient"] = _color(graph.add(common["ambient"], values.pop("ambient", 0.0)))
     exported = snapshot.Material(nodes=graph.nodes, **values, **common)
-    return _Exported(exported, frozenset(graph.attributes), frozenset(graph.objects), graph.reads_layer, graph.reads_time)
+    return _Exported(exported, frozenset(graph.attributes), graph.sources)
 
 
 def _flags(material):

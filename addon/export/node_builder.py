@@ -6,7 +6,7 @@ The base of graph.NodeGraph, which reads Blender's nodes into them.
 import math
 
 from ..bindings import snapshot
-from ..bindings.enums import MOST_NODES, AlphaMode, MathOperation, MixMode, NodeKind, VectorOperation
+from ..bindings.enums import MOST_NODES, MathOperation, MixMode, NodeKind, VectorOperation
 from ..bindings.shading import NodeRef
 from ..messages.severity import Severity
 from .arithmetic import is_constant, single, triple
@@ -33,7 +33,6 @@ class NodeBuilder:
         self.images = images
         self.unknown = unknown
         self._nodes = []
-        self._tables = {}
         self._scopes = [_Scope()]
 
     @property
@@ -70,16 +69,12 @@ class NodeBuilder:
         return 0.0 if gives_number(node) else (0.0, 0.0, 0.0)
 
     def table(self, values):
-        """Return the number of an image with the table, (n, channels) of float32, as its only row. Equal tables share one."""
+        """Return the number of an image with the table, (n, channels) of float32, as its only row."""
         return self.grid(values[None])
 
     def grid(self, values):
-        """Return the number of an image with these values, (rows, columns, channels) of float32. Equal ones share one."""
-        key = values.shape, values.tobytes()
-        if key not in self._tables:
-            picture = snapshot.Image(name="table", texels=values, alpha=AlphaMode.CHANNEL_PACKED)
-            self._tables[key] = self.images.repeat([picture])
-        return self._tables[key]
+        """Return the number of an image with these values, (rows, columns, channels) of float32."""
+        return self.images.table(values)
 
     def height_nodes(self, build):
         """Return (first, value) of build(), whose nodes from number first on are not shared: BUMP evaluates them elsewhere."""

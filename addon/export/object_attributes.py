@@ -27,7 +27,7 @@ def read_object_attributes(depsgraph, rows, messages, poll_every, poll):
 
     rows: {number of the entry of the depsgraph: names}, the rows in their order.
     """
-    reader = AttributeReader(depsgraph, messages)
+    reader = AttributeReader(depsgraph)
     columns = {name: np.zeros((len(rows), 4), np.float32) for name in sorted(frozenset().union(*rows.values()))}
     of_entry = {entry: row for row, entry in enumerate(rows)}
     reads_instancers = any(name.startswith(_OF_INSTANCER) for name in columns)
@@ -35,9 +35,9 @@ def read_object_attributes(depsgraph, rows, messages, poll_every, poll):
         if number % poll_every == 0:
             poll()
         names = rows.get(number, ())
-        layers = reader.layers(entry, names) if reads_instancers and entry.is_instance else ()
+        layers = reader.layers(entry, names, messages) if reads_instancers and entry.is_instance else ()
         for name in names:
-            columns[name][of_entry[number]] = reader.value(entry, name, layers)
+            columns[name][of_entry[number]] = reader.value(entry, name, layers, messages)
     return tuple(ObjectAttribute(name, values) for name, values in columns.items())
 
 
@@ -54,23 +54,22 @@ def _fact_of_lamp(entry, name):
 class AttributeReader:
     """Looks up values by the names of ObjectAttributes."""
 
-    def __init__(self, depsgraph, messages):
+    def __init__(self, depsgraph):
         self._depsgraph = depsgraph
         self._layers = InstanceLayers(depsgraph) if HAS_INSTANCES else None
-        self._messages = messages
-        self._values = {}
+        self._values = {}  # (value, message)
 
-    def layers(self, entry, names):
+    def layers(self, entry, names, messages):
         """Return the layers of Geometry Nodes that an instance belongs to, the innermost first."""
         if self._layers is None:
             if names and self._may_be_made(entry):
-                self._tell(entry.parent, "this Blender does not expose attributes of Geometry Nodes' instances")
+                _tell(messages, entry.parent, "this Blender does not expose attributes of Geometry Nodes' instances")
             return ()
         try:
             return self._layers.of(entry)
         except Unreadable:
             if names:
-                self._tell(entry.parent, "Blender does not expose the attributes of its instances' own instances")
+                _tell(messages, entry.parent, "Blender does not expose the attributes of its instances' own instances")
             return ()
 
     def _may_be_made(self, entry):
@@ -82,31 +81,34 @@ class AttributeReader:
     def _has_makers(self):
         return any(makes_instances(thing) for thing in bpy.data.objects)
 
-    def _tell(self, instancer, text):
-        text = f"object '{instancer.name}': {text}, Attribute nodes read properties instead"
-        self._messages.add(text, "feature:attributes of instances")
-
-    def of_lamp(self, entry, name):
+    def of_lamp(self, entry, name, messages):
         """Return four finite numbers: 0, 0, 0, 1 where lamps have no properties. name: also one of LAMP_FACTS."""
         if not LAMPS_ARE_OBJECTS and name != "Random":
             return _NONE if name in LAMP_FACTS else _OF_NO_OBJECT
         if name in LAMP_FACTS:
             return _fact_of_lamp(entry, name)
-        return self.value(entry, name, self.layers(entry, (name,)) if entry.is_instance else ())
+        return self.value(entry, name, self.layers(entry, (name,), messages) if entry.is_instance else (), messages)
 
-    def value(self, entry, name, layers):
+    def value(self, entry, name, layers, messages):
         """Return four finite numbers; zeros if nothing has that name."""
+        value, text = self._found(entry, name, layers)
+        if text:
+            messages.add(text)
+        return value
+
+    def _found(self, entry, name, layers):
+        """Return the numbers, and a message or ""."""
         if name.startswith(INSTANCER_PLACE):
-            return self._finite(entry, name, place_value(entry, name))
+            return _finite(entry, name, place_value(entry, name))
         if name.startswith(PARTICLE):
             scene = self._depsgraph.scene
-            return self._finite(entry, name, particle_value(entry, name, scene.frame_current + scene.frame_subframe))
+            return _finite(entry, name, particle_value(entry, name, scene.frame_current + scene.frame_subframe))
         of_instancer = name.startswith(_OF_INSTANCER)
         path = name[len(_OF_INSTANCER if of_instancer else _OF_OBJECT) :]
         for layer, row in layers if of_instancer else ():
             value = layer.value(path, row)
             if value is not None:
-                return self._finite(entry, path, value)
+                return _finite(entry, path, value)
         thing, instancer, particles = entry.object, entry.parent, entry.particle_system
         key = (
             name,
@@ -122,12 +124,16 @@ class AttributeReader:
                 value = property_value(instancer, path) if value is None else value
             if value is None:
                 value = object_value(thing, path, entry if entry.is_instance else None)
-            self._values[key] = _NONE if value is None else self._finite(entry, path, value)
+            self._values[key] = (_NONE, "") if value is None else _finite(entry, path, value)
         return self._values[key]
 
-    def _finite(self, entry, path, value):
-        finite = tuple(x if abs(x) <= _LARGEST else 0.0 for x in value)
-        if finite == value:
-            return value
-        self._messages.add(f"object '{entry.object.name}': attribute '{path}' is not finite, 0 is used")
-        return finite
+
+def _tell(messages, instancer, text):
+    text = f"object '{instancer.name}': {text}, Attribute nodes read properties instead"
+    messages.add(text, "feature:attributes of instances")
+
+
+def _finite(entry, path, value):
+    """Return the numbers made finite, and a message if that changes them."""
+    finite = tuple(x if abs(x) <= _LARGEST else 0.0 for x in value)
+    return finite, "" if finite == value else f"object '{entry.object.name}': attribute '{path}' is not finite, 0 is used"

@@ -13,10 +13,8 @@ from typing import NamedTuple
 import bpy
 
 from ..host.by_scene import identity
-from ..messages.messages import Messages
 from .images import Images
-
-_CHANGES_WITH_TIME = ("MOVIE", "SEQUENCE")
+from .shader_cache import ShaderCache
 
 
 class _Mesh(NamedTuple):
@@ -25,48 +23,13 @@ class _Mesh(NamedTuple):
     data: object
 
 
-class _Shader(NamedTuple):
-    """The export of the nodes of a material, a world or a lamp."""
-
-    owners: frozenset  # identities of the data whose updates change it
-    exported: object
-    messages: Messages
-    pictures: frozenset  # identities of Blender's images
-    numbers: frozenset
-    with_time: bool
-
-
-class _Asked:
-    """A wrapper of Images that records the requests of one shader."""
-
-    def __init__(self, images):
-        self._images = images
-        self.pictures, self.numbers_used, self.with_time = set(), set(), False
-
-    @property
-    def list(self):
-        return self._images.list
-
-    def numbers(self, image, user, tell):
-        found = self._images.numbers(image, user, tell)
-        self.pictures.add(identity(image))
-        self.with_time = self.with_time or image.source in _CHANGES_WITH_TIME
-        if found is not None:
-            self.numbers_used.update(range(found[0], sum(found)))
-        return found
-
-    def repeat(self, pictures):
-        first = self._images.repeat(pictures)
-        self.numbers_used.update(range(first, first + len(pictures)))
-        return first
-
-
 class Parts:
     def __init__(self):
         self.images = Images()
+        self.shaders = ShaderCache(self.images)
         self.counts = {}
+        self._images_before = 0
         self._meshes, self._used_meshes = {}, {}
-        self._shaders, self._used_shaders = {}, {}
         self._frame = None
         self._last = None  # snapshot, Messages and Places of the last export
 
@@ -76,8 +39,10 @@ class Parts:
         Return (snapshot, Messages) if objects have moved and nothing else has changed. Else return None; the caller exports
         and then calls end().
         """
-        self._used_meshes, self._used_shaders = {}, {}
+        self._used_meshes = {}
+        self.shaders.begin()
         self.counts = dict.fromkeys(("objects", "meshes", "shaders", "images"), 0)
+        self._images_before = self.images.placed
         self.images.obey = obey
         updates = [_Update(update) for update in depsgraph.updates]
         forgotten = self._forget(updates, depsgraph.scene.frame_current_final)
@@ -86,7 +51,7 @@ class Parts:
             return None
         snapshot, messages, places = last
         # An attribute may be a property that moves with its object.
-        if snapshot.instances.attributes:
+        if snapshot.instances.attributes or places is None:
             return None
         try:
             matrices = places.matrices(depsgraph)
@@ -104,15 +69,12 @@ class Parts:
         moved = {update.key for update in updates if update.moves}
         pictures = {update.key for update in updates if update.is_picture}
         later, self._frame = frame != self._frame, frame
-        before = len(self._meshes), len(self._shaders)
+        before = len(self._meshes)
         self._meshes = {key: mesh for key, mesh in self._meshes.items() if not mesh.owners & reshaped}
-        for key, shader in list(self._shaders.items()):
-            by_others = shader.pictures & pictures or shader.exported.objects & moved or changed and shader.exported.reads_layer
-            if shader.owners & changed or by_others or shader.with_time and later:
-                del self._shaders[key]
+        forgotten = self.shaders.forget(changed, moved, pictures, later)
         if pictures:
-            self.images.forget(pictures, self._numbers())
-        return before != (len(self._meshes), len(self._shaders))
+            self.images.forget(pictures, self.shaders.numbers())
+        return forgotten or before != len(self._meshes)
 
     def mesh(self, thing, owner, data_key, wanted, read):
         """Return the mesh of an evaluated object, from read() if it is not cached."""
@@ -128,38 +90,19 @@ class Parts:
         self._used_meshes[key] = found._replace(owners=found.owners | owners)
         return found.data
 
-    def shader(self, blocks, messages, read, place=()):
-        """Return read(messages, images) of the nodes of blocks, cached. Its field objects lists the objects it depends on.
-
-        place tells results of the same blocks apart.
-        """
-        owners = tuple(map(identity, blocks))
-        key = owners, place
-        found = self._shaders.get(key)
-        if found is None:
-            self.count("shaders")
-            asked, told, known = _Asked(self.images), Messages(), len(self.images.list)
-            exported = read(told, asked)
-            self.count("images", len(self.images.list) - known)
-            with_time = asked.with_time or exported.reads_time
-            pictures, numbers = frozenset(asked.pictures), frozenset(asked.numbers_used)
-            found = _Shader(exported.owners.union(owners), exported, told, pictures, numbers, with_time)
-        self._used_shaders[key] = found
-        messages.merge(found.messages)
-        return found.exported
-
-    def count(self, kind, number=1):
-        self.counts[kind] += number
+    def count(self, kind):
+        self.counts[kind] += 1
 
     def end(self, snapshot, messages, places):
-        """Keep the data that this export has used, and drop the rest."""
-        self._meshes, self._used_meshes = self._used_meshes, {}
-        self._shaders, self._used_shaders = self._used_shaders, {}
-        self.images.forget((), self._numbers())
-        self._last = snapshot, messages.copy(), places
+        """Keep the data that this export has used, and drop the rest.
 
-    def _numbers(self):
-        return frozenset().union(*(shader.numbers for shader in self._shaders.values()))
+        places: the Places of the instances; None if more than they move with objects.
+        """
+        self.counts.update(shaders=self.shaders.count, images=self.images.placed - self._images_before)
+        self._meshes, self._used_meshes = self._used_meshes, {}
+        self.shaders.end()
+        self.images.forget((), self.shaders.numbers())
+        self._last = snapshot, messages.copy(), places
 
 
 class _Update:

@@ -12,6 +12,7 @@ from .images import Images
 from .instances import Instances
 from .materials import Materials
 from .settings import export_settings
+from .shader_cache import ShaderCache
 from .unsupported import check_passes, check_scene, check_view_layer
 from .world import export_world
 
@@ -59,14 +60,16 @@ def export_scene(depsgraph, options=None, poll=None):
             snapshot, messages = again
             return snapshot.replaced(camera=camera, settings=settings), messages
     images = Images(obey, options.kept) if parts is None else parts.images
-    materials = Materials(messages, override, images, depsgraph, parts)
-    instances = Instances(depsgraph, materials, messages, options.kept, parts, options.space)
+    shaders = ShaderCache(images) if parts is None else parts.shaders
+    materials = Materials(messages, override, images, depsgraph, shaders)
+    instances = Instances(depsgraph, materials, messages, shaders, options.kept, parts, options.space)
     instances.collect(obey)
+
+    def read_sky(messages, images, value):
+        return export_world(sky, images, depsgraph, messages)
+
     sky = world if view_layer.use_sky else None
-    if parts is None or sky is None:
-        exported = export_world(sky, images, depsgraph, messages)
-    else:
-        exported = parts.shader((sky,), messages, lambda told, pictures: export_world(sky, pictures, depsgraph, told))
+    exported = export_world(None, images, depsgraph, messages) if sky is None else shaders.find(sky, messages, read_sky)
     table, meshes = instances.to_table(obey), instances.meshes
     # Only final renders of Cycles transform meshes to the world, which changes normals.
     if parts is None:
@@ -83,7 +86,8 @@ def export_scene(depsgraph, options=None, poll=None):
     )
     obey()
     if parts is not None:
-        parts.end(snapshot, messages, instances.places)
+        # The instance of a lamp moves with its instancer.
+        parts.end(snapshot, messages, None if instances.has_lamp_instances else instances.places)
     return snapshot, messages
 
 

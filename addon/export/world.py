@@ -9,6 +9,7 @@ from ..bindings import snapshot
 from ..bindings.enums import AlphaMode, Coordinate, Environment, Extension, NodeKind, PathFact
 from ..messages.severity import Severity
 from .graph import NodeGraph
+from .shader_cache import Sources
 from .sockets import output_node
 from .surface import emission_of
 from .visibility import hidden_from, lights_some_lobes
@@ -21,10 +22,7 @@ _SAME_FOR_SAMPLES = {PathFact.IS_CAMERA, PathFact.IS_VOLUME, PathFact.DEPTH, Pat
 
 class Sky(NamedTuple):
     world: snapshot.World
-    objects: frozenset = frozenset()  # identities of the objects whose transform its nodes read
-    reads_layer: bool = False  # see NodeGraph
-    reads_time: bool = False
-    owners: frozenset = frozenset()  # more data that it depends on
+    sources: Sources = Sources()
 
 
 def export_world(world, images, depsgraph, messages):
@@ -73,7 +71,7 @@ def export_world(world, images, depsgraph, messages):
         hidden_from=hidden,
         map_resolution=cycles.sample_map_resolution if method == "MANUAL" else 0,
     )
-    return Sky(sky, frozenset(graph.objects), graph.reads_layer, graph.reads_time)
+    return Sky(sky, graph.sources)
 
 
 def _nodes(world, graph, who, messages):

@@ -60,6 +60,24 @@ def test_edits_of_properties(which, tmp_path):
 
 
 @pytest.mark.parametrize("which", [MODULE, PROGRAM])
+def test_edits_of_lamps(which, tmp_path):
+    """A window's export follows the objects and instancers that show a lamp, and the texts that its nodes read."""
+    got = blenders.run(which, tmp_path, "lamp_edit_cases", "edits")
+    got.pop("console")
+    assert not [name for name, result in got.items() if not result[1]], "another snapshot than that of an export of everything"
+    assert not [name for name, result in got.items() if not result[2]], "other messages"
+
+
+@pytest.mark.parametrize("which", [MODULE, PROGRAM])
+def test_images_do_not_accumulate(which, tmp_path):
+    """Lamps share the table of a text, and later tables take the places of those not used any more."""
+    got = blenders.run(which, tmp_path, "lamp_edit_cases", "growth")
+    counts, same = got
+    # The place of a table is free after the export that reads the next one.
+    assert counts == [1, 2, 2, 2, 2, 2] and all(same)
+
+
+@pytest.mark.parametrize("which", [MODULE, PROGRAM])
 @pytest.mark.parametrize("persistent", ["no", "yes"])
 def test_frames_keep_what_does_not_change(which, tmp_path, persistent):
     """Four of nine meshes change, by a shape key, two modifiers and a face's slot; one of two image files is rewritten."""

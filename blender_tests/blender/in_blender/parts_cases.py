@@ -161,7 +161,7 @@ EDITS = {
 }
 
 
-class _Window:
+class Window:
     """Exports at each update of the depsgraph, as a 3D view does."""
 
     def __init__(self):
@@ -173,6 +173,7 @@ class _Window:
         options = ExportOptions(view=self.camera, parts=self.parts)
         got, messages = export_scene(depsgraph, options)
         whole, others = export_scene(depsgraph, dataclasses.replace(options, parts=None))
+        self.images = len(got.images)
         self.exports.append((dict(self.parts.counts), _plain(got) == _plain(whole), messages.lines() == others.lines()))
 
 
@@ -183,7 +184,8 @@ def _plain(given):
         (given.meshes[mesh], tuple(_material(given, table.slots[first + i]) for i in range(count)), matrix.tolist())
         for mesh, first, count, matrix in zip(table.meshes, table.first_slots, table.slot_counts, table.matrices, strict=True)
     ]
-    return rows, table.attributes, given.lights, _with_pictures(given, given.world), given.settings
+    lights = [_with_pictures(given, light) for light in given.lights]
+    return rows, table.attributes, lights, _with_pictures(given, given.world), given.settings
 
 
 def _material(given, number):
@@ -199,11 +201,11 @@ def _with_pictures(given, shader):
 def edits():
     """Return {edit: counts of all exports that it caused, same snapshot, same messages}."""
     _build()
-    return _results(EDITS)
+    return results(EDITS)
 
 
-def _results(edits):
-    window = _Window()
+def results(edits):
+    window = Window()
     results = {}
     bpy.context.view_layer.update()
     window.export(None, bpy.context.evaluated_depsgraph_get())
@@ -262,6 +264,6 @@ def property_edits():
     _box(1, "Placed", _named("OBJECT", "location"))
     stage.sky()
     stage.camera()
-    results = _results(_EDITS_OF_OBJECTS)
+    of_objects = results(_EDITS_OF_OBJECTS)
     _box(2, "Layered", _named("VIEW_LAYER", "heat"))
-    return {**_results(_EDITS_OF_THE_LAYER), **results}
+    return {**results(_EDITS_OF_THE_LAYER), **of_objects}
