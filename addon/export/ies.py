@@ -1,5 +1,6 @@
 """The IES Texture: photometric files (IES LM-63) as tables of intensities, in Cycles' angles."""
 
+import functools
 import math
 import re
 
@@ -7,6 +8,7 @@ import bpy
 import numpy as np
 
 from ..bindings.enums import Coordinate, MathOperation, NodeKind, Space
+from ..host.by_scene import identity
 from ..messages.severity import Severity
 from .coordinates import NORMALS, coordinate
 
@@ -16,7 +18,16 @@ _OF_NO_FILE = 100.0  # Cycles' strength without a file that it can read
 _NEAR = 1e-4  # degrees
 _TYPE_C, _TYPE_B, _TYPE_A = 1, 2, 3
 _IS_STRICT = bpy.app.version < (4, 0)  # reads types B and C alone, with angles that cover whole quadrants
+_TYPES = (_TYPE_C, _TYPE_B) if _IS_STRICT else (_TYPE_C, _TYPE_B, _TYPE_A)
 _PADS_WITH_ZERO = (4, 0) <= bpy.app.version < (5, 0)
+# Before 3.6 Cycles takes the end of a file after a number as its lack.
+_READS_ON = bpy.app.version < (3, 6)
+_TILT_INCLUDED = "\nTILT=INCLUDE"
+_ENDS_EARLY = "the file ends before its last number"
+_WHOLE = re.compile(r"[ \t\n\v\f\r]*([+-]?[0-9]+)")
+_NUMBER = re.compile(
+    r"[ \t\n\v\f\r]*([+-]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:e[+-]?[0-9]+)?|inf(?:inity)?|nan))", re.IGNORECASE | re.ASCII
+)
 
 
 def _ies_texture(graph, site, output):
@@ -45,79 +56,128 @@ def _table(graph, site):
         return None
     try:
         return ies_table(text)
+    except Unsupported as error:
+        _tell_strength(graph, site, f"{error}, which is not supported,", "feature:photometric file")
     except ValueError as error:
-        graph.tell(site, f"{error}, as in Cycles the strength is {_OF_NO_FILE:g} everywhere", "", Severity.WRONG)
-        return None
+        _tell_strength(graph, site, f"{error}, as in Cycles")
+    return None
+
+
+def _tell_strength(graph, site, reason, key=""):
+    graph.tell(site, f"{reason} the strength is {_OF_NO_FILE:g} everywhere", key, Severity.WRONG)
 
 
 def _text(graph, site):
     node = site.node
     if node.mode == "INTERNAL":
         if node.ies is None:
-            graph.tell(site, f"has no text, as in Cycles the strength is {_OF_NO_FILE:g} everywhere", "", Severity.WRONG)
+            _tell_strength(graph, site, "has no text, as in Cycles")
             return None
-        return node.ies.as_string()
+        text = node.ies.as_string()
+        graph.texts.add((identity(node.ies), text))
+        # Cycles ends each line of a text.
+        return text + "\n"
     path = bpy.path.abspath(node.filepath, library=node.id_data.library)
     try:
-        with open(path, encoding="latin-1") as file:
+        with open(path, encoding="latin-1", newline="") as file:
             return file.read()
     except OSError as error:
-        text = f"cannot read '{path}': {error.strerror}, as in Cycles the strength is {_OF_NO_FILE:g} everywhere"
-        graph.tell(site, text, "", Severity.WRONG)
+        _tell_strength(graph, site, f"cannot read '{path}': {error.strerror}, as in Cycles")
         return None
 
 
+class Unsupported(ValueError):
+    """A file that Cycles reads and Lancer does not."""
+
+
+@functools.lru_cache(maxsize=32)
 def ies_table(text):
     """Return the table of a file's text, as lancer.h describes it for IES; ValueError if Cycles does not read it."""
     kind, v, h, intensities = _parsed(text)
-    convert = {_TYPE_A: _from_type_a, _TYPE_B: _from_type_b, _TYPE_C: _from_type_c}.get(kind)
-    if convert is None or (_IS_STRICT and kind == _TYPE_A):
-        raise ValueError(f"type {kind} of photometry is not supported by this Blender")
+    convert = {_TYPE_A: _from_type_a, _TYPE_B: _from_type_b, _TYPE_C: _from_type_c}[kind]
     v, h, intensities = convert(v, h, intensities)
     if len(v) < 2 or len(h) < 2:
-        raise ValueError("the file has fewer than two angles")
-    v, h = (np.float32(angles) * (np.float32(math.pi) / np.float32(180.0)) for angles in (v, h))
+        raise Unsupported("the file has a single angle")
+    with np.errstate(over="ignore"):
+        v, h, intensities = (np.asarray(values, np.float32) for values in (v, h, intensities))
+        v, h = (angles * (np.float32(math.pi) / np.float32(180.0)) for angles in (v, h))
     if (np.diff(v) < 0.0).any() or (np.diff(h) < 0.0).any():
-        raise ValueError("the angles of the file do not ascend")
+        raise Unsupported("the angles of the file do not ascend")
     table = np.zeros((len(h) + 3, len(v) + 3), np.float32)
     table[0, 2:-1], table[2:-1, 0] = v, h
     table[2:-1, 2:-1] = intensities
+    if not np.isfinite(table).all():
+        raise Unsupported("the file has numbers that are not finite")
     _pad(table[1:, 1:], v, h)
+    # All that read the file share the table.
+    table.flags.writeable = False
     return table
 
 
 def _parsed(text):
     """Return the type, the vertical and the horizontal angles in degrees, and the intensities, (horizontal, vertical)."""
-    start = text.find("\nTILT=")
-    if start < 0:
-        raise ValueError("the file has no line TILT=")
-    end = text.find("\n", start + 1)
-    is_included = text.startswith("\nTILT=INCLUDE", start)
-    numbers = _numbers(text[start + len("\nTILT=INCLUDE") :] if is_included else text[end:] if end >= 0 else "")
-    if is_included:
-        next(numbers)
-        for _ in range(2 * int(next(numbers))):
-            next(numbers)
-    _, _, factor, v_count, h_count, kind = (next(numbers) for _ in range(6))
-    _, _, _, _, ballast, photometric, _ = (next(numbers) for _ in range(7))
-    factor *= ballast * photometric * _WATTS_PER_CANDELA
-    v_count, h_count = int(v_count), int(h_count)
+    numbers = _Numbers(text)
+    numbers.skip_tilt()
+    numbers.whole(), numbers.number()
+    factor = numbers.number()
+    v_count, h_count, kind = (numbers.whole() for _ in range(3))
+    if kind not in _TYPES:
+        raise ValueError(f"this Blender does not read photometry of type {kind}")
+    numbers.whole(), numbers.several(3)
+    ballast, photometric, _ = numbers.several(3)
     if v_count < 1 or h_count < 1:
         raise ValueError("the file has no angles")
-    v, h = ([next(numbers) for _ in range(count)] for count in (v_count, h_count))
-    values = np.array([next(numbers) for _ in range(v_count * h_count)])
-    if not np.isfinite(values).all() or not np.isfinite(v).all() or not np.isfinite(h).all():
-        raise ValueError("the file has numbers that are not finite")
-    return int(kind), np.array(v), np.array(h), factor * values.reshape(h_count, v_count)
+    v, h = numbers.several(v_count), numbers.several(h_count)
+    values = numbers.several(v_count * h_count)
+    numbers.end()
+    with np.errstate(over="ignore", invalid="ignore"):
+        values = factor * ballast * photometric * _WATTS_PER_CANDELA * np.array(values)
+    return kind, np.array(v), np.array(h), values.reshape(h_count, v_count)
 
 
-def _numbers(text):
-    for word in re.split(r"[\s,]+", text.strip()):
-        try:
-            yield float(word)
-        except ValueError:
-            break
-    raise ValueError("the file ends before its last number")
+class _Numbers:
+    """Reads the numbers of a file one after the other; a whole number ends where its digits end, as in C."""
+
+    def __init__(self, text):
+        # Cycles takes commas as blanks, and a character of code 0 as the end.
+        self._text, self._at = text.replace(",", " ").partition("\0")[0], 0
+
+    def skip_tilt(self):
+        self._at = self._text.find("\nTILT=")
+        if self._at < 0:
+            raise ValueError("the file has no line TILT=")
+        if self._text.startswith(_TILT_INCLUDED, self._at):
+            self._at += len(_TILT_INCLUDED)
+            self.number()
+            self.several(2 * self.whole())
+        else:
+            self._at = self._text.find("\n", self._at + 1)
+        if not 0 <= self._at < len(self._text):
+            raise ValueError(_ENDS_EARLY)
+        self._at += 1
+
+    def number(self):
+        value = float(self._next(_NUMBER))
+        if not math.isfinite(value):
+            raise Unsupported("the file has numbers that are not finite")
+        return value
+
+    def whole(self):
+        return int(self._next(_WHOLE))
+
+    def several(self, count):
+        return [self.number() for _ in range(count)]
+
+    def end(self):
+        if _READS_ON and self._at == len(self._text):
+            raise ValueError("the file has nothing after its last number")
+
+    def _next(self, pattern):
+        found = pattern.match(self._text, self._at)
+        if found is None:
+            raise ValueError(_ENDS_EARLY)
+        self._at = found.end()
+        return found[1]
 
 
 def _is_near(a, b):
@@ -188,23 +248,27 @@ def _from_type_c(v, h, values):
 
 def _pad(grid, v, h):
     """Set the rows and columns beyond the ends, between which and the next two the cubic is fitted."""
-    # In single precision the difference to a whole turn is lost: as in Cycles, angles that reach it exactly do not go around.
+    # In single precision 1e-7 less than pi is pi: as in Cycles, angles that end exactly there do not go around.
     tiny = np.float32(1e-7)
     wraps_v_low, wraps_v_high = v[0] < tiny, v[-1] > np.float32(math.pi) - tiny
     wraps_h = h[0] < tiny and h[-1] > np.float32(2.0 * math.pi) - tiny
     inside = grid[1:-1]
-    nothing = 0.0 if _PADS_WITH_ZERO else None
     if _IS_STRICT:
         inside[:, 0], inside[:, -1] = inside[:, 2], inside[:, -2]
         wraps_h = True
     else:
-        inside[:, 0] = inside[:, 2] if wraps_v_low else inside[:, 1] if nothing is None else nothing
-        inside[:, -1] = inside[:, -3] if wraps_v_high else inside[:, -2] if nothing is None else nothing
+        inside[:, 0] = inside[:, 2] if wraps_v_low else _beyond(inside[:, 1])
+        inside[:, -1] = inside[:, -3] if wraps_v_high else _beyond(inside[:, -2])
     if wraps_h:
         grid[0], grid[-1] = grid[-3], grid[2]
-    elif nothing is None:
+    else:
         # Beyond the last angle Cycles repeats the last but one.
-        grid[0], grid[-1] = grid[1], grid[-3]
+        grid[0], grid[-1] = _beyond(grid[1]), _beyond(grid[-3])
+
+
+def _beyond(values):
+    """Return the values beyond an end, at which values are repeated."""
+    return np.zeros_like(values) if _PADS_WITH_ZERO else values
 
 
 READERS = {"TEX_IES": _ies_texture}

@@ -65,7 +65,7 @@ def _atmosphere(node, graph, site, model):
     size, intensity, elevation, rotation, altitude, *densities = _finite(node, graph, site, *names)
     elevation, rotation = _position(elevation, rotation)
     size = max(size, _SMALLEST_SUN)
-    xyz, rims = sky.compute(model, elevation, size, altitude, [max(density, 0.0) for density in densities])
+    xyz, rims = sky.compute(model, elevation, size, altitude, tuple(max(density, 0.0) for density in densities))
     matrix = _xyz_to_rgb().T
     rims = intensity * (rims @ matrix)
     sun = math.cos(elevation) * math.sin(rotation), math.cos(elevation) * math.cos(rotation), math.sin(elevation)
