@@ -1,5 +1,7 @@
 """How pointed a mesh is at its vertices, as the Pointiness output of Cycles' Geometry node: 0.5 is flat, more is convex."""
 
+import itertools
+
 import numpy as np
 
 from ..bindings.enums import Domain
@@ -7,8 +9,14 @@ from ..bindings.snapshot import MeshAttribute
 from .arrays import read
 from .edges import edge_ends
 
-# Vertices count as one if their coordinates' sums and their places are as near as this (single precision's 1 + epsilon).
+# Vertices count as one if the square of their distance is less, and the sums of their coordinates are not farther apart.
 _EPSILON = np.float32(2.0**-23)
+_FARTHEST = np.float32(3.0) * _EPSILON
+# Cells of a grid per unit, half of which is longer than the root of _EPSILON.
+_CELLS = 1024.0
+# Mixes a cell's three numbers into one; where two cells get the same, their vertices are compared in vain.
+_MIXED = 2.0**0.5 * 1e4, 3.0**0.5 * 1e8
+_SPREAD = np.uint64(0x9E3779B97F4A7C15)  # the odd number nearest to 2^64 over the golden ratio
 
 
 def pointiness_attribute(mesh, name, positions, poll):
@@ -37,21 +45,18 @@ def _first_of_equals(positions, poll):
     sums = positions[:, 0] + positions[:, 1] + positions[:, 2]
     order = np.argsort(sums, kind="stable")
     sums, places = sums[order], positions[order]
-    following = np.arange(len(order))
-    waiting, step = np.arange(len(order)), 0
-    # Look for an equal vertex among the next ones, until their sums are too far away.
-    while True:
+    # Most vertices have no other with nearly the same sum.
+    beside = np.concatenate([[False], sums[1:] - sums[:-1] <= _FARTHEST, [False]])
+    some = np.flatnonzero(beside[1:] | beside[:-1])
+    nearest = np.full(len(some), len(some))
+    # Two places less than half a cell apart share a cell of one of eight grids, each shifted by half a cell along some axes.
+    for shift in itertools.product((0.0, 0.5), repeat=3):
         poll()
-        step += 1
-        waiting = waiting[waiting < len(order) - step]
-        other = waiting + step
-        is_near = sums[other] - sums[waiting] <= np.float32(3.0) * _EPSILON
-        waiting, other = waiting[is_near], other[is_near]
-        if len(waiting) == 0:
-            break
-        is_equal = ((places[other] - places[waiting]) ** 2).sum(axis=1) < _EPSILON
-        following[waiting[is_equal]] = other[is_equal]
-        waiting = waiting[~is_equal]
+        for one, other in _find_pairs(sums[some], places[some], np.array(shift), poll):
+            nearest[one] = np.minimum(nearest[one], other)
+    following = np.arange(len(order))
+    found = nearest < len(some)
+    following[some[found]] = some[nearest[found]]
     # Follow each chain to its end.
     while True:
         further = following[following]
@@ -61,6 +66,34 @@ def _first_of_equals(positions, poll):
     first = np.empty(len(order), np.int64)
     first[order] = order[following]
     return first
+
+
+def _find_pairs(sums, places, shift, poll):
+    """Yield (vertices, the next equal vertex of each in its cell). The vertices are in the order of their sums."""
+    x, y, z = np.floor(places.astype(float) * _CELLS + shift).T
+    keys = x + y * _MIXED[0] + z * _MIXED[1]
+    grouped = _companions(keys)
+    grouped = grouped[np.argsort(keys[grouped], kind="stable")]
+    keys, waiting, step = keys[grouped], np.arange(len(grouped)), 0
+    # Look for an equal vertex among the next ones, until the cell ends or their sums are too far away.
+    while len(waiting):
+        poll()
+        step += 1
+        waiting = waiting[waiting < len(grouped) - step]
+        waiting = waiting[keys[waiting + step] == keys[waiting]]
+        one, other = grouped[waiting], grouped[waiting + step]
+        is_near = sums[other] - sums[one] <= _FARTHEST
+        waiting, one, other = waiting[is_near], one[is_near], other[is_near]
+        is_equal = ((places[other] - places[one]) ** 2).sum(axis=1) < _EPSILON
+        yield one[is_equal], other[is_equal]
+        waiting = waiting[~is_equal]
+
+
+def _companions(keys):
+    """Return the places of all keys that are not alone, and of few others, without sorting."""
+    bits = (4 * len(keys)).bit_length()
+    hashes = (keys.view(np.uint64) * _SPREAD >> np.uint64(64 - bits)).astype(np.int64)
+    return np.flatnonzero(np.bincount(hashes)[hashes] > 1)
 
 
 def _summed(first, values):
