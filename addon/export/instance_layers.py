@@ -18,6 +18,9 @@ _NOT_STORED = "position"  # Blender adds it to the points that stand for instanc
 class Unreadable(Exception):
     """Blender does not expose the instances that an entry belongs to."""
 
+    def __init__(self, text="Blender does not expose the attributes of its instances' own instances"):
+        super().__init__(text)
+
 
 def makes_instances(thing):
     """Whether Geometry Nodes may make instances of the object."""
@@ -32,9 +35,9 @@ def steps(entry):
 class _Layer:
     """The instances of one geometry, a row for each."""
 
-    def __init__(self, geometry, points):
+    def __init__(self, geometry, points, sees_all):
         # Blender frees the points with the geometry.
-        self._geometry = geometry
+        self._geometry, self._sees_all = geometry, sees_all
         self._parts = [own for part, own in _PARTS.items() if getattr(geometry, part, None) is not None]
         self._attributes = points.attributes
         self._references = geometry.instance_references()
@@ -51,6 +54,8 @@ class _Layer:
         if number not in self._rows:
             if not self._repeated:
                 raise Unreadable
+            if not self._sees_all:
+                raise Unreadable("Blender does not expose which of its instances with one id shows a lamp")
             self._rows[number] = self._repeated.pop(0)
         return self._rows[number]
 
@@ -63,7 +68,7 @@ class _Layer:
         if not isinstance(found, bpy.types.GeometrySet):
             return found
         if number not in self._below:
-            self._below[number] = _layer_of(found)
+            self._below[number] = _layer_of(found, self._sees_all)
         return self._below[number]
 
     def parts(self, kind):
@@ -93,16 +98,17 @@ class _Layer:
         return values.reshape(-1, width).astype(float)
 
 
-def _layer_of(geometry):
+def _layer_of(geometry, sees_all):
     points = geometry.instances_pointcloud()
-    return None if points is None else _Layer(geometry, points)
+    return None if points is None else _Layer(geometry, points, sees_all)
 
 
 class InstanceLayers:
-    """Finds the layers of the entries of a depsgraph, which must be given all, in their order. Each geometry is read once."""
+    """Finds the layers of the entries of a depsgraph. Each geometry is read once."""
 
-    def __init__(self, depsgraph):
-        self._depsgraph = depsgraph
+    def __init__(self, depsgraph, sees_all):
+        """sees_all: whether of() is called for all entries, in their order, and not for lamps alone."""
+        self._depsgraph, self._sees_all = depsgraph, sees_all
         self._hidden = "hide_render" if depsgraph.mode == "RENDER" else "hide_viewport"
         self._layers = {}
 
@@ -115,7 +121,7 @@ class InstanceLayers:
     def _layer(self, thing):
         key = thing.as_pointer()
         if key not in self._layers:
-            self._layers[key] = _layer_of(thing.evaluated_geometry()) if makes_instances(thing) else None
+            self._layers[key] = _layer_of(thing.evaluated_geometry(), self._sees_all) if makes_instances(thing) else None
         return self._layers[key]
 
     def _follow(self, thing, numbers, found):

@@ -69,7 +69,7 @@ class Instances:
         self.has_lamp_instances = False
         self._space = space
         self._shaders = shaders
-        self._reader = AttributeReader(depsgraph)
+        self._reader = AttributeReader(depsgraph, sees_all=False)
         self._objects = Objects(depsgraph, materials, messages, kept, parts)
         self._rows = {}
         self._narrowed = {}

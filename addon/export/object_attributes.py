@@ -27,7 +27,7 @@ def read_object_attributes(depsgraph, rows, messages, poll_every, poll):
 
     rows: {number of the entry of the depsgraph: names}, the rows in their order.
     """
-    reader = AttributeReader(depsgraph)
+    reader = AttributeReader(depsgraph, sees_all=True)
     columns = {name: np.zeros((len(rows), 4), np.float32) for name in sorted(frozenset().union(*rows.values()))}
     of_entry = {entry: row for row, entry in enumerate(rows)}
     reads_instancers = any(name.startswith(_OF_INSTANCER) for name in columns)
@@ -54,9 +54,10 @@ def _fact_of_lamp(entry, name):
 class AttributeReader:
     """Looks up values by the names of ObjectAttributes."""
 
-    def __init__(self, depsgraph):
+    def __init__(self, depsgraph, sees_all):
+        """sees_all: as for InstanceLayers."""
         self._depsgraph = depsgraph
-        self._layers = InstanceLayers(depsgraph) if HAS_INSTANCES else None
+        self._layers = InstanceLayers(depsgraph, sees_all) if HAS_INSTANCES else None
         self._values = {}  # (value, message)
 
     def layers(self, entry, names, messages):
@@ -67,9 +68,9 @@ class AttributeReader:
             return ()
         try:
             return self._layers.of(entry)
-        except Unreadable:
+        except Unreadable as reason:
             if names:
-                _tell(messages, entry.parent, "Blender does not expose the attributes of its instances' own instances")
+                _tell(messages, entry.parent, str(reason))
             return ()
 
     def _may_be_made(self, entry):

@@ -47,6 +47,14 @@ def test_attributes_of_instances_that_blender_hides_are_told(which, tmp_path):
         assert len(messages) == (name in hidden) and all(said in text for text in messages), (name, messages)
 
 
+def test_a_lamp_among_instances_of_one_id_is_told(tmp_path):
+    """Blender gives instances that repeat an id random ones, which tell them apart only where all are seen."""
+    emissions, messages = blenders.run(MODULE, tmp_path, "stand_in_cases", "lamps_of_equal_ids")
+    plain, placed = emissions
+    assert len(messages) == 1 and "does not expose which of its instances with one id shows a lamp" in messages[0]
+    assert plain == 0.0 and placed > 0.0
+
+
 @pytest.mark.parametrize("which", [MODULE, PROGRAM])
 def test_light_between_facets_is_told_where_it_is_computed_differently(which, tmp_path):
     got = blenders.run(which, tmp_path, "stand_in_cases", "facets")

@@ -95,6 +95,38 @@ def attributes_of_instances():
     return result
 
 
+def lamps_of_equal_ids():
+    """Return the strength and the messages of a lamp that Geometry Nodes instance beside cubes, all with one id."""
+    scene = stage.empty()
+    lamp = stage.light()
+    lamp.data.use_nodes = True
+    read = lamp.data.node_tree.nodes.new("ShaderNodeAttribute")
+    read.attribute_type, read.attribute_name = "INSTANCER", "heat"
+    tree = lamp.data.node_tree
+    tree.links.new(read.outputs["Color"], next(node for node in tree.nodes if node.type == "EMISSION").inputs["Color"])
+    maker = _made(scene.collection, None)
+    maker["heat"] = 0.25
+    tree = maker.modifiers[0].node_group
+    output = next(node for node in tree.nodes if node.type == "GROUP_OUTPUT")
+    cube = next(node for node in tree.nodes if node.type == "OBJECT_INFO")
+    join = tree.nodes.new("GeometryNodeJoinGeometry")
+    light = tree.nodes.new("GeometryNodeObjectInfo")
+    light.inputs["Object"].default_value, light.inputs["As Instance"].default_value = lamp, True
+    # Links to one socket join from the last to the first.
+    for source in (light, cube, cube):
+        named = tree.nodes.new("GeometryNodeStoreNamedAttribute")
+        named.domain, named.inputs["Name"].default_value = "INSTANCE", "heat"
+        named.inputs["Value"].default_value = 0.75 if source == light else 0.5
+        tree.links.new(source.outputs["Geometry"], named.inputs["Geometry"])
+        tree.links.new(named.outputs["Geometry"], join.inputs[0])
+    numbered = tree.nodes.new("GeometryNodeSetID")
+    tree.links.new(tree.nodes.new("FunctionNodeInputInt").outputs[0], numbered.inputs["ID"])
+    tree.links.new(join.outputs[0], numbered.inputs["Geometry"])
+    tree.links.new(numbered.outputs["Geometry"], output.inputs[0])
+    snapshot, messages = export_told()
+    return [light.emission[0] for light in snapshot.lights], [text for text in messages.lines() if "Attribute nodes" in text]
+
+
 def samplers():
     """Return {name: messages} of surfaces on either side of the limits beyond which Cycles samples the sky with bias."""
     old = bpy.app.version < (4, 0)
