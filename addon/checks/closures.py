@@ -16,8 +16,9 @@ _SHARES = [name for name, (kind, _) in PARAMETERS[Principled].items() if kind ==
 _COLORED = {
     LobeKind.LAMBERT, LobeKind.DIFFUSE, LobeKind.MIRROR, LobeKind.GLOSSY, LobeKind.PHONG, LobeKind.BLINN_PHONG,
     LobeKind.DIELECTRIC, LobeKind.GLASS, LobeKind.REFRACTION, LobeKind.TRANSLUCENT, LobeKind.MINNAERT,
+    LobeKind.TOON,
 }  # fmt: skip
-_WITHOUT_ROUGHNESS = {LobeKind.LAMBERT, LobeKind.PHONG, LobeKind.BLINN_PHONG, LobeKind.MIRROR, LobeKind.MINNAERT}
+_WITHOUT_ROUGHNESS = {LobeKind.LAMBERT, LobeKind.PHONG, LobeKind.BLINN_PHONG, LobeKind.MIRROR, LobeKind.MINNAERT, LobeKind.TOON}
 # Weights of Mix Shaders sum to 1 up to rounding of single precision; colours are entered with three digits.
 _MORE_THAN_ALL = 1.001
 # Fewer texels of an image than this share are not reported.

@@ -128,12 +128,16 @@ _DIFFUSE_TOON, _GLOSSY_TOON = 0, 1
 
 
 def _toon(surface, site, weight):
+    smooth = surface.share(site, ("Smooth",), 0.0)
+    if (4, 0) <= bpy.app.version < (4, 2) and not is_constant(smooth, 0.0):
+        text = "its smooth edge fades as in Blender 4.2, which this version's Cycles shows of another brightness"
+        surface.graph.tell(site, text, "feature:smooth toon of Cycles 4.0")
     surface.add(
         LobeKind.TOON,
         weight,
         surface.color(site),
         roughness=surface.share(site, ("Size",), 0.5),
-        roughness_across=surface.share(site, ("Smooth",), 0.0),
+        roughness_across=smooth,
         normal=surface.normal(site),
         option=_GLOSSY_TOON if site.node.component == "GLOSSY" else _DIFFUSE_TOON,
     )
@@ -141,6 +145,8 @@ def _toon(surface, site, weight):
 
 def _portal(surface, site, weight):
     graph = surface.graph
+    if graph.read_integrator() == "CLASSIC":
+        graph.tell(site, "the integrator Classic lets its rays pass straight on", "feature:portals of Classic")
     # Cycles reads the position from a link alone; without one, light goes on where it is.
     position = graph.linked(site, ("Position",), None)
     surface.send_on(

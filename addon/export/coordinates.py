@@ -73,6 +73,11 @@ _PATH_FACTS = {
 }
 
 
+def spaces(start, end):
+    """Return the flags of VECTOR_TRANSFORM from one Space to another."""
+    return start | end << 2
+
+
 def coordinate(graph, which, name=""):
     if graph.is_of_lamp:
         return _of_lamp(graph, which, name)
@@ -95,7 +100,7 @@ def _of_lamp(graph, which, name):
         which = Coordinate.INCOMING
     elif which == Coordinate.CAMERA and not LAMPS_ARE_OBJECTS:
         place = graph.emit(NodeKind.COORDINATE, option=Coordinate.POSITION)
-        return graph.emit(NodeKind.VECTOR_TRANSFORM, place, option=1, flags=Space.WORLD | Space.CAMERA << 2)
+        return graph.emit(NodeKind.VECTOR_TRANSFORM, place, option=1, flags=spaces(Space.WORLD, Space.CAMERA))
     return graph.emit(NodeKind.COORDINATE, option=which)
 
 

@@ -61,13 +61,13 @@ _PRINCIPLED = (
 
 @dataclass(frozen=True)
 class Description:
-    lobes: tuple  # of lines: lobes, emission, transmittance, holdout
+    lobes: tuple  # of lines: lobes, emission, transmittance, holdout, portals, displacement
     losses: tuple  # of lines: nodes and inputs that are left out or replaced, each once
 
 
 def describe_material(material):
     messages = Messages()
-    # Panels are drawn often: read no files.
+    # Panels are drawn often: read no images.
     materials = Materials(messages, images=NoPictures())
     exported = materials.list[materials.number(material, None)]
     # The core splits only Principled lobes into several.
@@ -80,6 +80,7 @@ def describe_material(material):
     for value, name in ((seen.emission, "Emission"), (seen.transmittance, "Passes"), (exported.holdout, "Hole")):
         if not is_constant(value, 0.0):
             lines.append(f"{name}: {_told(value)}")
+    lines += [f"Portal: {_told(portal.weight)}{', elsewhere' if portal.moves else ''}" for portal in exported.portals]
     if not is_constant(exported.displacement, 0.0):
         lines.append("Displacement: textured")
     return Description(tuple(lines or ["Black"]), tuple(_without_owner(line, material) for line in messages))

@@ -9,6 +9,7 @@ _DEFAULT_IOR = 1.33
 # The luminance of Rec. 709: the core computes the colours of films in its primaries.
 _LUMINANCE = (0.2126, 0.7152, 0.0722)
 _NEAR = 1e-3
+_OUTSIDE = "feature:thin film outside Rec. 709"
 
 
 def read_film(surface, site):
@@ -18,6 +19,6 @@ def read_film(surface, site):
     if not isinstance(thickness, NodeRef) and thickness <= _THINNEST:
         return {}
     if any(abs(a - b) > _NEAR for a, b in zip(luminance_weights(), _LUMINANCE, strict=True)):
-        graph.tell(site, "the colours of its film are those of Rec. 709, and not of the working space")
+        graph.tell(site, "the colours of its film are those of Rec. 709, and not of the working space", _OUTSIDE)
     ior = graph.parameter(site, PRINCIPLED["film_ior"], _DEFAULT_IOR, low=SMALLEST_IOR)
     return {"film_thickness": thickness, "film_ior": ior}

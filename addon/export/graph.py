@@ -52,10 +52,15 @@ class NodeGraph(NodeBuilder):
         self.material_index = 0  # of the owner; 0 if the owner is no material
         self.normal = (0.0, 0.0, 0.0)  # the bumped normal of the whole material; (0, 0, 0) is the shading normal
         self._ignored = set()
-        self.walker = Walker(_has_scripts(depsgraph), self._tell_ignored)
+        self._walker = Walker(_has_scripts(depsgraph))
         self._tree = None  # the ShaderTree that is read
         self._active = set()
         self._is_ahead = False
+
+    def read_integrator(self):
+        """Return the scene's integrator; "" without a depsgraph."""
+        self.reads_layer = True
+        return "" if self.depsgraph is None else self.depsgraph.scene.lancer.integrator
 
     @property
     def sources(self):
@@ -73,6 +78,13 @@ class NodeGraph(NodeBuilder):
     def _name(self, node):
         return node.name if self._tree is None else self._tree.name(node)
 
+    def origin(self, site, socket):
+        """Return the Origin of a socket, and tell of the nodes before it that Cycles ignores."""
+        found = self._walker.origin(site, socket)
+        while self._walker.ignored:
+            self._tell_ignored(self._walker.ignored.pop())
+        return found
+
     def _tell_ignored(self, site):
         is_script = site.node.type == "SCRIPT"
         # The scene decides whether scripts run.
@@ -82,12 +94,14 @@ class NodeGraph(NodeBuilder):
             when = " without Open Shading Language" if is_script else ""
             self.tell(site, f"{site.node.bl_label} has no effect{when}, as in Cycles", "", Severity.HINT)
 
+    def who(self, site):
+        """Return the owner and the node, as messages name them."""
+        return f"{self.owner}, node '{self._name(_site(site).node)}'"
+
     def tell(self, site, text, key=None, severity=Severity.DIFFERENT):
         """Add a message that names the node. key: of Messages.add; None counts the node's type as missing, "" nothing."""
-        node = _site(site).node
-        self.messages.add(
-            f"{self.owner}, node '{self._name(node)}': {text}", f"node:{node.bl_label}" if key is None else key, severity
-        )
+        key = f"node:{_site(site).node.bl_label}" if key is None else key
+        self.messages.add(f"{self.who(site)}: {text}", key, severity)
 
     def parameter(self, site, names, default=0.0, kind="number", low=-math.inf, high=math.inf):
         """Return the node's first input with one of the names, made finite; default if this Blender has none.
@@ -101,7 +115,7 @@ class NodeGraph(NodeBuilder):
         value = self._read(site, socket)
         if isinstance(value, NodeRef):
             return value
-        who = f"{self.owner}, node '{self._name(site.node)}'"
+        who = self.who(site)
         if kind == "number":
             return self.messages.number(value if isinstance(value, float) else value[0], who, socket.name, default, low, high)
         if kind == "color":
@@ -118,7 +132,7 @@ class NodeGraph(NodeBuilder):
         socket = find(site.node, names)
         if socket is None:
             return False
-        origin = self.walker.origin(site, socket)
+        origin = self.origin(site, socket)
         return origin.site is not None or _gives_constant(origin, socket)
 
     def linked(self, site, names, default, evaluated=False):
@@ -128,7 +142,7 @@ class NodeGraph(NodeBuilder):
         """
         site = _site(site)
         socket = find(site.node, names)
-        origin = None if socket is None else self.walker.origin(site, socket)
+        origin = None if socket is None else self.origin(site, socket)
         if origin is not None and origin.site is None:
             if _gives_constant(origin, socket) or evaluated and self._is_evaluated(site, origin, socket):
                 return self.input(site, socket)
@@ -158,7 +172,7 @@ class NodeGraph(NodeBuilder):
         return 0.0 if isinstance(value, float) else (0.0, 0.0, 0.0)
 
     def _read(self, site, socket):
-        origin = self.walker.origin(site, socket)
+        origin = self.origin(site, socket)
         value = None if origin.site is None else self._output(origin.site, origin.output)
         types = origin.types
         if value is not None:
@@ -214,7 +228,7 @@ class NodeGraph(NodeBuilder):
                     self._output(site, output)
             elif key not in depths:
                 depths[key] = 0
-                origins = [self.walker.origin(site, socket) for socket in site.node.inputs if socket.enabled]
+                origins = [self.origin(site, socket) for socket in site.node.inputs if socket.enabled]
                 origins = [origin for origin in origins if origin.site is not None]
                 open_.append((site, output, [(*origin.site.key, origin.output.as_pointer()) for origin in origins]))
                 open_.extend((origin.site, origin.output, None) for origin in origins)

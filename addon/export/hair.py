@@ -2,17 +2,22 @@
 
 import math
 
-from ..bindings.enums import Coordinate, LobeKind, MathOperation, NodeKind
+import bpy
+
+from ..bindings.enums import Coordinate, LobeKind, MathOperation, NodeKind, Rules
 from ..bindings.shading import NodeRef
 from .arithmetic import triple
-from .sockets import SMALLEST_IOR
+from .sockets import RULES, SMALLEST_IOR
 
 _REFLECTION, _TRANSMISSION = 0, 1  # the option of HAIR
 # Absorption of the pigments of human hair (d'Eon et al. 2011), per concentration.
 _EUMELANIN, _PHEOMELANIN = (0.506, 0.841, 1.653), (0.343, 0.733, 1.924)
 # The polynomial in the roughness around a fibre by which Chiang et al. 2016 turn a reflectance into an absorption.
 _SCALE = (0.245, 5.574, -10.73, 2.532, -0.215, 5.969)
-_DARKEST, _THINNEST = 1e-30, 1e-4  # below these Cycles' logarithms are those of these
+_DARKEST = 1e-30  # in place of black, which has no logarithm: it absorbs all light, too
+_THINNEST = 1e-4  # Cycles' least value of 1 - melanin
+# Before 4.2 Cycles computes fibres as in Blender 3.
+_FIBRE_RULES = Rules.BLENDER_3 if bpy.app.version < (4, 2) else RULES
 
 
 def read_hair(surface, site, weight):
@@ -37,7 +42,8 @@ def _edge(graph, which):
 
 def read_principled_hair(surface, site, weight):
     graph, m = surface.graph, MathOperation
-    if getattr(site.node, "model", "CHIANG") == "HUANG":
+    is_huang = getattr(site.node, "model", "CHIANG") == "HUANG"
+    if is_huang:
         graph.tell(site, "the model Huang is not supported, Chiang is used")
 
     def number(name, default, low=-math.inf, high=math.inf):
@@ -49,12 +55,14 @@ def read_principled_hair(surface, site, weight):
 
     uneven = spread(number("Random Roughness", 0.0))
     along = graph.op(m.MULTIPLY, number("Roughness", 0.3), uneven)
-    around = graph.op(m.MULTIPLY, number("Radial Roughness", 0.3), uneven)
+    # Huang's model has one roughness.
+    around = along if is_huang else graph.op(m.MULTIPLY, number("Radial Roughness", 0.3), uneven)
     coat = graph.clamped(number("Coat", 0.0, 0.0, 1.0))
     surface.add(
         LobeKind.HAIR_FIBRE,
         weight,
         _absorption(graph, site, number, spread, around),
+        rules=_FIBRE_RULES,
         roughness=along,
         roughness_across=around,
         edge=_in_first(graph, graph.subtract(1.0, coat)),

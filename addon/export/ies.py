@@ -10,7 +10,7 @@ import numpy as np
 from ..bindings.enums import Coordinate, MathOperation, NodeKind, Space
 from ..host.by_scene import identity
 from ..messages.severity import Severity
-from .coordinates import NORMALS, coordinate
+from .coordinates import NORMALS, coordinate, spaces
 
 # Candela to the watts of a lamp, for the luminous efficacy of D65, 177.83 lm/W.
 _WATTS_PER_CANDELA = 0.0706650768394
@@ -46,7 +46,7 @@ def _seen_from(graph):
     if bpy.app.version < (4, 0):
         return coordinate(graph, Coordinate.NORMAL)
     incoming = coordinate(graph, Coordinate.INCOMING)
-    return graph.emit(NodeKind.VECTOR_TRANSFORM, incoming, option=NORMALS, flags=Space.WORLD | Space.OBJECT << 2)
+    return graph.emit(NodeKind.VECTOR_TRANSFORM, incoming, option=NORMALS, flags=spaces(Space.WORLD, Space.OBJECT))
 
 
 def _table(graph, site):

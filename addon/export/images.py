@@ -85,7 +85,7 @@ class Images:
 
 
 class NoPictures:
-    """A stand-in for Images that reads no file, for panels and lamps."""
+    """A stand-in for Images that reads none, for panels and for a lamp alone."""
 
     def numbers(self, image, user, tell):
         return 0, 1

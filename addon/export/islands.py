@@ -17,7 +17,7 @@ def island_attribute(mesh, name, triangles, poll):
 
 
 def _roots(ends, count, poll):
-    """Return the vertex that numbers each vertex's part: the root of a forest that is joined by rank in the order of edges."""
+    """Return for each vertex the number of its part: the root of its tree. Edges join trees by rank, in their order."""
     parents, ranks = list(range(count)), [0] * count
     for number, (a, b) in enumerate(ends.tolist()):
         if number % _POLL_EVERY == 0:

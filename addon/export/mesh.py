@@ -36,8 +36,8 @@ def shown_mesh(thing, owner):
 def export_mesh(mesh, name, poll, wanted=frozenset()):
     """Return the MeshData of a mesh: its shading normals, render UV map, colours and the wanted attributes.
 
-    wanted: names from attribute_name() and tangents_name(), "generated", POLYGONS, RENDER_COLOR. poll is called between
-    arrays and ends the export by an exception.
+    wanted: names from attribute_name() and tangents_name(), "generated", ISLANDS, POINTINESS, POLYGONS, RENDER_COLOR. poll is
+    called between arrays and ends the export by an exception.
     """
     positions = read_positions(mesh)
     poll()

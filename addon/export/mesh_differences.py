@@ -3,12 +3,15 @@
 import bpy
 import numpy as np
 
-from ..bindings.enums import MaterialFlag, NodeKind
+from ..bindings.enums import Coordinate, MaterialFlag, NodeKind
 from .arithmetic import is_constant
-from .attributes import lacks_tangents, name_in_blender, named_attributes
+from .attributes import ISLANDS, POINTINESS, lacks_tangents, name_in_blender, named_attributes
 from .coordinates import ALONG_U
 
 _SMOOTHS_FLAT_FACES = (5, 0) <= bpy.app.version < (5, 2)
+# The attributes that are outputs of the Geometry node.
+_OUTPUTS = {ISLANDS: "Random Per Island", POINTINESS: "Pointiness"}
+_EDGES = (Coordinate.EDGE_U, Coordinate.EDGE_V)
 _KEEPS_CORNERS = bpy.app.version >= (5, 2)
 
 
@@ -34,8 +37,13 @@ def differences(mesh, materials):
 
 def lost_by_exact_shape(wanted, materials):
     """Return the names of what the object's mesh would have and its exact shape lacks. wanted: names of attributes."""
-    lost = [f"attribute '{attribute}'" for attribute in named_attributes(wanted)]
-    return ["displacement", *lost] if _are_displaced(materials) else lost
+    nodes = [node for material in materials for node in material.nodes]
+    lost = ["displacement"] if _are_displaced(materials) else []
+    if any(node.kind == NodeKind.WIREFRAME for node in nodes):
+        lost.append("Wireframe")
+    if any(node.kind == NodeKind.COORDINATE and node.option in _EDGES for node in nodes):
+        lost.append("edges for the direction of hair")
+    return [*lost, *(_OUTPUTS.get(name, f"attribute '{name}'") for name in named_attributes(wanted))]
 
 
 def _are_displaced(materials):

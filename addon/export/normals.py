@@ -130,7 +130,7 @@ def _from_tangents(graph, vector):
 def displacement_height(graph, site, socket):
     """Return the distance along the normal by which the displacement linked to a socket moves the surface."""
     m, v = MathOperation, VectorOperation
-    origin = graph.walker.origin(site, socket)
+    origin = graph.origin(site, socket)
     if origin.site is None:
         return 0.0
     node = origin.site.node

@@ -102,8 +102,7 @@ class AttributeReader:
         if name.startswith(INSTANCER_PLACE):
             return _finite(entry, name, place_value(entry, name))
         if name.startswith(PARTICLE):
-            scene = self._depsgraph.scene
-            return _finite(entry, name, particle_value(entry, name, scene.frame_current + scene.frame_subframe))
+            return _finite(entry, name, particle_value(entry, name, self._depsgraph.scene.frame_current_final))
         of_instancer = name.startswith(_OF_INSTANCER)
         path = name[len(_OF_INSTANCER if of_instancer else _OF_OBJECT) :]
         for layer, row in layers if of_instancer else ():

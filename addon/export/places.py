@@ -4,7 +4,7 @@ import bpy
 
 from ..bindings.enums import AttributeFlag, Coordinate, MathOperation, NodeKind, ObjectFact, PathFact, Space, VectorOperation
 from .arithmetic import THIRDS
-from .coordinates import NORMALS, coordinate, named_value
+from .coordinates import NORMALS, coordinate, named_value, spaces
 from .particles import PARTICLE, random_of_particle
 
 _SPACES = {"WORLD": Space.WORLD, "OBJECT": Space.OBJECT, "CAMERA": Space.CAMERA}
@@ -27,14 +27,14 @@ def _transform(graph, site, output):
     value = graph.value(site, 0)
     kind = _VECTORS[node.vector_type]
     is_turned = kind == NORMALS and _NORMALS_ARE_VECTORS
-    start, end = (lamp_space(graph, _SPACES[name]) for name in (node.convert_from, node.convert_to))
+    start, end = (_lamp_space(graph, _SPACES[name]) for name in (node.convert_from, node.convert_to))
     if start != end:
         option = _VECTORS["VECTOR"] if is_turned else kind
-        value = graph.emit(NodeKind.VECTOR_TRANSFORM, value, option=option, flags=start | end << 2)
+        value = graph.emit(NodeKind.VECTOR_TRANSFORM, value, option=option, flags=spaces(start, end))
     return graph.vector_op(VectorOperation.NORMALIZE, value) if is_turned else value
 
 
-def lamp_space(graph, space):
+def _lamp_space(graph, space):
     """Return the space that Cycles means: before 4.0 lamps have no space of their own."""
     return Space.WORLD if graph.is_of_lamp and bpy.app.version < (4, 0) and space == Space.OBJECT else space
 

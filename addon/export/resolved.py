@@ -14,7 +14,7 @@ _ZONES = {
     "NodeJoinBundle", "NodeSeparateBundle",
 }  # fmt: skip
 # Blender numbers the nodes of a resolved tree: one node may appear several times.
-_NUMBER = re.compile(r"\d+_")
+_NUMBER = re.compile(r"^\d+_")
 
 
 class ShaderTree:
@@ -33,7 +33,7 @@ class ShaderTree:
 
     def name(self, node):
         """Return the name of a node, which the user gave it."""
-        return node.name if self._owner is None else _NUMBER.sub("", node.name, count=1)
+        return node.name if self._owner is None else _NUMBER.sub("", node.name)
 
 
 def _trees_inside(tree):

@@ -47,11 +47,11 @@ _ZENITH = np.array(
 def _sky(graph, site, output):
     node = site.node
     vector = mapped_vector(graph, site)
-    # Before 5.0 NISHITA is the only model with an atmosphere, and has no successor's name.
+    # Before 5.0 the only model with an atmosphere is NISHITA, which later versions do not have.
     model = SkyModel[node.sky_type]
     if model in (SkyModel.PREETHAM, SkyModel.HOSEK_WILKIE):
         build = _preetham if model == SkyModel.PREETHAM else _hosek_wilkie
-        table = build(*_finite(node, graph, site, "turbidity", "ground_albedo"), _direction(node.sun_direction))[None]
+        table = build(*_finite(graph, site, "turbidity", "ground_albedo"), _direction(graph, site))[None]
         matrix = (*_xyz_to_rgb().ravel(), 0.0, 0.0, 0.0)
     else:
         table, matrix = _atmosphere(node, graph, site, model)
@@ -62,7 +62,7 @@ def _atmosphere(node, graph, site, model):
     """Return the table in RGB and the numbers of the sun."""
     dust = "aerosol_density" if hasattr(node, "aerosol_density") else "dust_density"
     names = ("sun_size", "sun_intensity", "sun_elevation", "sun_rotation", "altitude", "air_density", dust, "ozone_density")
-    size, intensity, elevation, rotation, altitude, *densities = _finite(node, graph, site, *names)
+    size, intensity, elevation, rotation, altitude, *densities = _finite(graph, site, *names)
     elevation, rotation = _position(elevation, rotation)
     size = max(size, _SMALLEST_SUN)
     xyz, rims = sky.compute(model, elevation, size, altitude, tuple(max(density, 0.0) for density in densities))
@@ -73,9 +73,9 @@ def _atmosphere(node, graph, site, model):
     return (xyz @ matrix).astype(np.float32), (*rims.ravel(), *sun, size if node.sun_disc else 0.0, horizon, 0.0)
 
 
-def _finite(node, graph, site, *names):
-    who = f"{graph.owner}, node '{node.name}'"
-    return [graph.messages.number(getattr(node, name), who, name.replace("_", " ").title(), 0.0) for name in names]
+def _finite(graph, site, *names):
+    node, who = site.node, graph.who(site)
+    return [graph.messages.number(getattr(node, name), who, node.bl_rna.properties[name].name, 0.0) for name in names]
 
 
 def _position(elevation, rotation):
@@ -86,10 +86,13 @@ def _position(elevation, rotation):
     return elevation, rotation
 
 
-def _direction(vector):
-    x, y, z = vector
+def _direction(graph, site):
+    x, y, z = site.node.sun_direction
     length = math.sqrt(x * x + y * y + z * z)
-    return (x / length, y / length, z / length) if 0.0 < length < math.inf else (0.0, 0.0, 1.0)
+    if 0.0 < length < math.inf:
+        return x / length, y / length, z / length
+    graph.tell(site, f"its sun direction ({x:g}, {y:g}, {z:g}) is no direction, the zenith is used", "")
+    return 0.0, 0.0, 1.0
 
 
 def _xyz_to_rgb():

@@ -58,8 +58,7 @@ class Surface:
 
     def read(self, site, socket):
         """Add all closures upstream of a shader socket."""
-        walker = self.graph.walker
-        root = walker.origin(site, socket)
+        root = self.graph.origin(site, socket)
         if root.site is None:
             return
         weights, shares = {_key(root): 1.0}, {_key(root): 1.0}
@@ -96,7 +95,7 @@ class Surface:
                 done.add(key)
                 open_.append((origin, True))
                 if origin.site.node.type in ("MIX_SHADER", "ADD_SHADER"):
-                    sources = (self.graph.walker.origin(origin.site, socket) for socket in _shader_inputs(origin.site))
+                    sources = (self.graph.origin(origin.site, socket) for socket in _shader_inputs(origin.site))
                     open_.extend((source, False) for source in sources if source.site is not None)
         return reversed(order)
 
@@ -110,12 +109,12 @@ class Surface:
             self.emit(graph.multiply(color, weight))
             return ()
         if node.type == "MIX_SHADER":
-            first, second = (graph.walker.origin(site, socket) for socket in _shader_inputs(site))
+            first, second = (graph.origin(site, socket) for socket in _shader_inputs(site))
             factor = graph.clamped(graph.parameter(site, ("Fac", "Factor"), 0.5, low=0.0, high=1.0))
             rest = graph.subtract(1.0, factor)
             return ((first, rest), (second, factor))
         if node.type == "ADD_SHADER":
-            return tuple((graph.walker.origin(site, socket), 1.0) for socket in _shader_inputs(site))
+            return tuple((graph.origin(site, socket), 1.0) for socket in _shader_inputs(site))
         CLOSURES.get(node.type, read_unknown)(self, site, weight)
         return ()
 

@@ -11,7 +11,7 @@ _LOOSE_ENDS_ARE_ZERO = bpy.app.version < (5, 0)
 # CUSTOM GROUP is a node of an add-on with a tree of its own.
 GROUPS = {"GROUP", "CUSTOM GROUP"}
 # Nodes that Cycles does not know: it leaves out their links.
-_IGNORED = {"EEVEE_SPECULAR", "SHADERTORGB", "SQUEEZE"}
+_IGNORED = {"EEVEE_SPECULAR", "SHADERTORGB", "SQUEEZE", "UVALONGSTROKE"}
 _LONGEST = 10000  # hops: ends the walk in a cycle of reroutes
 
 
@@ -43,11 +43,11 @@ class Origin:
 class Walker:
     """Caches the links of each tree, which Blender would search for every socket."""
 
-    def __init__(self, has_scripts, ignore):
-        """has_scripts: whether Cycles runs scripts. ignore(site) is called for each link from a node that Cycles ignores."""
+    def __init__(self, has_scripts):
+        """has_scripts: whether Cycles runs scripts."""
+        self.ignored = []  # Sites that Cycles ignores, one for each link from them
         self._links = {}
         self._ignored = _IGNORED if has_scripts else _IGNORED | {"SCRIPT"}
-        self._ignore = ignore
 
     def origin(self, site, socket):
         asked, path, types = socket, site.path, [socket.type]
@@ -66,7 +66,7 @@ class Walker:
             elif node.type == "GROUP_INPUT" and path:
                 onward, path = _by_identifier(path[-1].inputs, output.identifier), path[:-1]
             elif node.type in self._ignored:
-                self._ignore(Site(node, path))
+                self.ignored.append(Site(node, path))
                 if not _LOOSE_ENDS_ARE_ZERO:
                     constant, depth = asked, 1
                 break

@@ -37,6 +37,10 @@ def case(which, answers, tmp_path):
     return run
 
 
+def test_graphs_end_with_their_export(case):
+    assert case("freed") == 0
+
+
 class Nodes:
     """An independent evaluation of the nodes of weights, for a given value of the mesh attribute."""
 
@@ -352,8 +356,13 @@ def test_thin_films_and_walls(case):
 def test_hair_on_meshes(case):
     got = dict(case("hair", where="closure_cases"))
     del got["version"], got["console"]
-    assert all(material["messages"] == [] for material in got.values())
     lobes = {name: material["lobes"][0] for name, material in got.items()}
+    if "Huang" in got:
+        (text,) = got.pop("Huang")["messages"]
+        assert "the model Huang is not supported" in text
+        # It has one roughness, here 0.5 as the other nodes' radial one.
+        assert lobes["Huang"]["color"][0] == near(lobes["COLOR"]["color"][0])
+    assert all(material["messages"] == [] for material in got.values())
     scale = 5.969 + 0.5 * (-0.215 + 0.5 * (2.532 + 0.5 * (-10.73 + 0.5 * (5.574 + 0.5 * 0.245))))
     assert lobes["COLOR"]["color"] == near([(math.log(x) / scale) ** 2 for x in (0.25, 1e-30, 1.0)])
     # Random 1 adds half of Random Color's amount to the melanin: 0.5 becomes 0.75.
@@ -367,6 +376,15 @@ def test_hair_on_meshes(case):
     assert got["bare"]["node kinds"] == ["COORDINATE"]
 
 
+def test_portals_of_classic_are_told(case):
+    got = dict(case("portals_of_classic", where="closure_cases"))
+    del got["console"]
+    if got:
+        assert got.pop("PATH") == []
+        (text,) = got["CLASSIC"]
+        assert "the integrator Classic lets its rays pass straight on" in text
+
+
 def test_portals(case):
     got = dict(case("portals", where="closure_cases"))
     del got["console"]
@@ -377,6 +395,7 @@ def test_portals(case):
         assert material["messages"] == [] and material["kinds"] == ["LAMBERT"]
         assert material["transmittance"] == near([0.25, 0.125, 0.5])
         (portal,) = material["portals"]
+        assert f"Portal: 0.25 0.125 0.5{', elsewhere' if name == 'moves' else ''}" in material["panel"]
         assert portal["weight"] == near([0.25, 0.125, 0.5]) and portal["direction"] == near([0.0, 2.0, 0.0])
         # Cycles reads a position from a link alone.
         assert (portal["moves"], isinstance(portal["position"], dict)) == ((1, True) if name == "moves" else (0, False))

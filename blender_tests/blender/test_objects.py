@@ -82,5 +82,5 @@ def test_messages(case):
     got = case("told")
     assert got["empty slot"] == ["object 'Cube': material slot 1 is empty, grey is used"] and got["override"] == []
     assert got["strokes"] == [True, []]
-    lost = "displacement, attribute 'Map'"
+    lost = "displacement, Wireframe, edges for the direction of hair, attribute 'Map', Pointiness"
     assert got["exact"] == [f"object 'SPHERE': its exact shape lacks what its mesh would have: {lost}"]

@@ -2,6 +2,7 @@
 
 import bpy
 import stage
+from export_cases import export_told
 from material_cases import Tree, answer
 
 
@@ -40,6 +41,11 @@ def hair():
             socket = next(socket for socket in node.inputs if socket.identifier == name.replace("_", " "))
             socket.default_value = (*value, 1.0)[: len(socket.default_value)] if isinstance(value, tuple) else value
         materials.append(tree.show(node.outputs[0]))
+    if bpy.app.version >= (4, 0):
+        tree = Tree("Huang")
+        node = tree.node("BsdfHairPrincipled", model="HUANG", parametrization="COLOR")
+        node.inputs["Color"].default_value, node.inputs["Roughness"].default_value = (0.25, 0.5, 1.0, 1.0), 0.5
+        materials.append(tree.show(node.outputs[0]))
     for name in ("bare", "combed"):
         tree = Tree(name)
         node = tree.node("BsdfHair", Offset=0.5)
@@ -47,6 +53,18 @@ def hair():
             tree.tree.links.new(tree.node("Tangent", direction_type="RADIAL").outputs[0], node.inputs["Tangent"])
         materials.append(tree.show(node.outputs[0]))
     return answer(*materials)
+
+
+def portals_of_classic():
+    """Return the messages of a Ray Portal for each integrator; nothing where this Blender has none."""
+    told = {}
+    for integrator in ("PATH", "CLASSIC") if bpy.app.version >= (4, 2) else ():
+        scene = stage.empty()
+        tree = Tree("Portal")
+        stage.plane(material=tree.show(tree.node("BsdfRayPortal").outputs[0]))
+        scene.lancer.integrator = integrator
+        told[integrator] = [text for text in export_told()[1].lines() if "Portal" in text]
+    return told
 
 
 def portals():

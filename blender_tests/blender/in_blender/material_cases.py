@@ -1,6 +1,7 @@
 """Materials that are exported but not rendered: their lobes and nodes as plain data, which the test compares."""
 
 import dataclasses
+import gc
 
 import bpy
 import numpy as np
@@ -10,6 +11,7 @@ from export_cases import export_told
 from addon.bindings.enums import Domain, LobeKind, NodeKind
 from addon.bindings.shading import NodeRef
 from addon.export.describe import describe_material
+from addon.export.graph import NodeGraph
 from addon.export.materials import Materials
 from addon.messages.messages import Messages
 
@@ -90,6 +92,17 @@ class Tree:
     def varying(self, name="shade"):
         """Return an output that varies over the surface, so that only the core can evaluate it."""
         return self.node("Attribute", attribute_name=name).outputs["Fac"]
+
+
+def freed():
+    """Return the number of graphs that an export leaves for the collector of reference cycles."""
+    stage.empty()
+    gc.disable()
+    try:
+        read(stage.shader())
+        return sum(isinstance(thing, NodeGraph) for thing in gc.get_objects())
+    finally:
+        gc.enable()
 
 
 def own_models():

@@ -184,6 +184,20 @@ def _facts(record):
     return [getattr(record, name) for name in names]
 
 
+def _add_mesh_nodes(material):
+    """Add closures to a material that depend on edges and points of a mesh."""
+    tree = material.node_tree
+    surface = next(n for n in tree.nodes if n.type == "OUTPUT_MATERIAL").inputs["Surface"]
+    add = tree.nodes.new("ShaderNodeAddShader")
+    tree.links.new(surface.links[0].from_socket, add.inputs[0])
+    hair, mix = tree.nodes.new("ShaderNodeBsdfHair"), tree.nodes.new("ShaderNodeMath")
+    tree.links.new(tree.nodes.new("ShaderNodeWireframe").outputs[0], mix.inputs[0])
+    tree.links.new(tree.nodes.new("ShaderNodeNewGeometry").outputs["Pointiness"], mix.inputs[1])
+    tree.links.new(mix.outputs[0], hair.inputs["RoughnessU"])
+    tree.links.new(hair.outputs[0], add.inputs[1])
+    tree.links.new(add.outputs[0], surface)
+
+
 def told():
     """Return messages about empty slots without and with an override, strokes that Blender draws itself, and exact shapes."""
     result = {}
@@ -208,6 +222,7 @@ def told():
     tree.links.new(place.outputs["Generated"], node.inputs["Height"])
     output = next(n for n in tree.nodes if n.type == "OUTPUT_MATERIAL")
     tree.links.new(node.outputs[0], output.inputs["Displacement"])
+    _add_mesh_nodes(material)
     for shape in ("MESH", "SPHERE"):
         item = stage.cube(material=material)
         item.name, item.lancer.shape = shape, shape
