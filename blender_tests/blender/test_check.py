@@ -47,6 +47,7 @@ def of(kind, **fields):
         (of(LobeKind.GLASS, ior=-1.5), of(LobeKind.GLASS, ior=float("inf"))),
         (of(LobeKind.LAMBERT, weight=(-0.1, 1, 1)), of(LobeKind.LAMBERT, weight=(0, 1, 1))),
         (of(LobeKind.LAMBERT, color=(1.1, 0.5, 0.5)), of(LobeKind.LAMBERT, color=(1.0, 1.0, 1.0))),
+        (of(LobeKind.TOON, color=(1.1, 0.5, 0.5)), of(LobeKind.TOON, roughness=7.0)),
         (
             Material("m", lobes=(Lobe(color=(0.8,) * 3), Lobe(LobeKind.GLOSSY, color=(0.8,) * 3))),
             Material(

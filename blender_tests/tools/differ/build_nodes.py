@@ -38,6 +38,12 @@ def build_node(tree, name, fields, find):
     except RuntimeError:
         return None
     node.name = name
+    if "zone" in fields:
+        node.repeat_items.clear()
+        node.repeat_items.new(_TYPES[fields["zone"]][1], "Item")
+    end = find(fields.get("pair"))
+    if end is not None:
+        node.pair_with_output(end)
     for setting, value in fields.get("props", {}).items():
         if isinstance(value, str) and value.startswith("@"):
             value = find(value)
@@ -57,14 +63,26 @@ def build_node(tree, name, fields, find):
         if socket is None:
             continue
         if is_link(value):
-            source = find(value[0])
-            output = None if source is None else _socket(source.outputs, value[1])
-            if output is not None:
-                tree.links.new(output, socket)
+            link(tree, value, socket, find)
         else:
             _give(socket, value)
     node.mute = fields.get("mute", False)
     return node
+
+
+def link(tree, value, socket, find):
+    """Link an output, [name of the node, key], to an input; nothing where one of them is missing."""
+    source = find(value[0])
+    output = None if source is None or socket is None else _socket(source.outputs, value[1])
+    if output is not None:
+        tree.links.new(output, socket)
+
+
+def build_link(fields, find):
+    """The link to a node that is older than its source."""
+    node = find(fields["node"])
+    if node is not None:
+        link(node.id_data, fields["source"], _socket(node.inputs, fields["input"]), find)
 
 
 def _set(owner, name, value):

@@ -7,7 +7,7 @@ from mathutils import Matrix
 
 from scenes import parts
 
-from . import build_images, build_meshes, build_nodes
+from . import build_images, build_meshes, build_nodes, build_photometry
 
 _MODIFIER_SHAPES = {"MESH"}
 
@@ -35,6 +35,9 @@ class Builder:
 
     def _image(self, name, fields):
         self.things[name] = build_images.build_image(name, fields)
+
+    def _photometry(self, name, fields):
+        self.things[name] = build_photometry.build_photometry(name, fields)
 
     def _material(self, name, fields):
         material = self.things[name] = bpy.data.materials.new(name)
@@ -247,6 +250,9 @@ class Builder:
             node = build_nodes.build_node(tree, name, fields, self.find)
             if node is not None:
                 self.things[name] = node
+
+    def _link(self, name, fields):
+        build_nodes.build_link(fields, self.find)
 
 
 def _set_any(owners, name, value):

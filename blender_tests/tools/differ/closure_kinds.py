@@ -61,7 +61,7 @@ SHADERS = {
         {"Color": C, "Size": F, "Smooth": F, "Normal": NORMAL}, {"BSDF": "s"}, {"component": ("DIFFUSE", "GLOSSY")}
     ),
     "ShaderNodeBsdfHair": Kind(
-        {"Color": C, "Offset": ("f", -0.5, 0.5), "RoughnessU": F, "RoughnessV": F},
+        {"Color": C, "Offset": ("f", -0.5, 0.5), "RoughnessU": F, "RoughnessV": F, "Tangent": TANGENT},
         {"BSDF": "s"},
         {"component": ("Reflection", "Transmission")},
         0.4,
@@ -77,6 +77,16 @@ SHADERS = {
         0.4,
     ),
     "ShaderNodeBsdfRayPortal": Kind({"Color": C, "Position": V, "Direction": V}, {"BSDF": "s"}, weight=0.5),
+    "ShaderNodeSubsurfaceScattering": Kind(
+        {
+            "Color": C, "Scale": ("f", 0.0, 0.1), "Radius": ("v", 0.1, 1.0), "IOR": ("f", 1.1, 2.0), "Roughness": F,
+            "Anisotropy": ("f", 0.0, 0.8), "Normal": NORMAL,
+        },
+        {"BSSRDF": "s"},
+        {"falloff": ("BURLEY", "RANDOM_WALK", "RANDOM_WALK_SKIN")},
+        0.1,
+        special=("sparse",),
+    ),
     "ShaderNodeBsdfTranslucent": Kind({"Color": C, "Normal": NORMAL}, {"BSDF": "s"}),
     "ShaderNodeBsdfTransparent": Kind({"Color": C}, {"BSDF": "s"}),
     "ShaderNodeEmission": Kind({"Color": C, "Strength": ("f", 0.0, 2.0)}, {"Emission": "s"}, weight=2.0),

@@ -1,6 +1,15 @@
 """describe(seed): a random small scene of what the add-on supports, as records. Knows nothing of Blender."""
 
-from . import closure_kinds, random_emitters, random_exact, random_frames, random_images, random_lights, random_properties
+from . import (
+    closure_kinds,
+    random_emitters,
+    random_exact,
+    random_frames,
+    random_images,
+    random_lights,
+    random_photometry,
+    random_properties,
+)
 from .dice import Dice
 from .random_nodes import Trees
 from .random_things import Things
@@ -15,7 +24,9 @@ def describe(seed):
     things = Things(dice, [record.name for record in materials])
     things.fill()
     frame, views = random_frames.frame(dice)
-    trees = Trees(dice, [record.name for record in images], things.names)
+    luminaires = [random_photometry.luminaire(dice, number + 1) for number in range(dice.whole(0, 1))]
+    named = [[record.name for record in records] for records in (images, luminaires)]
+    trees = Trees(dice, named[0], things.names, named[1])
     trees.is_opaque = frame.get("kind") == "DATA"
     for record in materials:
         trees.material(record.name)
@@ -29,7 +40,7 @@ def describe(seed):
         worlds.append(Record("world", "Other world", {"apart": True}))
         random_emitters.world_tree(trees, "Other world")
     for record in lamps:
-        if record.verb == "lamp" and dice.chance(0.15):
+        if record.verb == "lamp" and dice.chance(0.3):
             record.fields["nodes"] = True
             random_emitters.lamp_tree(trees, record.name)
     kinds = {
@@ -41,6 +52,7 @@ def describe(seed):
     everything = [
         Record("frame", "Frame", frame),
         *images,
+        *luminaires,
         *materials,
         *worlds,
         *lamps,

@@ -25,6 +25,7 @@ NORMAL = ("n", 0.0, 0.0)
 TANGENT = ("a", 0.0, 0.0)
 TEXTURE = ("t", 0.0, 0.0)
 SWITCH = (False, True)
+FROM_INSTANCER = (False, False, False, False, False, True)
 
 _BLENDS = (
     "MIX", "DARKEN", "MULTIPLY", "BURN", "LIGHTEN", "SCREEN", "DODGE", "ADD", "OVERLAY", "SOFT_LIGHT", "LINEAR_LIGHT",
@@ -273,10 +274,11 @@ VALUES = {
     "ShaderNodeTexCoord": Kind(
         {},
         {"Generated": "v", "Normal": "v", "UV": "v", "Object": "v", "Camera": "v", "Window": "v", "Reflection": "v"},
+        {"from_instancer": FROM_INSTANCER},
         special=("object",),
         weight=3.0,
     ),
-    "ShaderNodeUVMap": Kind({}, {"UV": "v"}, special=("uv_map",)),
+    "ShaderNodeUVMap": Kind({}, {"UV": "v"}, {"from_instancer": FROM_INSTANCER}, special=("uv_map",)),
     "ShaderNodeAttribute": Kind(
         {}, {"Color": "c", "Vector": "v", "Fac": "f", "Alpha": "f"}, special=("attribute",), weight=4.0
     ),

@@ -55,9 +55,7 @@ def _background(trees, tree, image):
         color = [_picture(trees, tree, image), "Color"]
     elif dice.chance(0.2):
         trees.budget = 5
-        # No sky is darker than black.
-        inputs = {"Vector": trees.value(tree, "c", 1)}
-        color = [trees.write(tree, "ShaderNodeVectorMath", {"operation": "ABSOLUTE"}, inputs), "Vector"]
+        color = [_positive(trees, tree, trees.value(tree, "c", 1)), "Vector"]
     strength = dice.number(0.2, 1.2)
     if image is None and not isinstance(color[0], str) and dice.chance(0.2):
         # A tenth of the strength makes it as bright as the other skies.
@@ -66,6 +64,11 @@ def _background(trees, tree, image):
     if dice.chance(0.05):
         return [trees.write(tree, "ShaderNodeEmission", {}, inputs), "Emission"]
     return [trees.write(tree, "ShaderNodeBackground", {}, inputs), "Background"]
+
+
+def _positive(trees, tree, value):
+    """A node of the value's amount: no light is darker than black."""
+    return trees.write(tree, "ShaderNodeVectorMath", {"operation": "ABSOLUTE"}, {"Vector": value})
 
 
 def _sky(trees, tree):
@@ -101,13 +104,23 @@ def _picture(trees, tree, image):
 
 
 def lamp_tree(trees, tree):
-    """Constant light: colours and numbers that no place or direction changes."""
+    """Light of one colour, of a temperature or of computed nodes, of a strength that may fall otherwise with the distance."""
     dice = trees.dice
+    trees.emitters.add(tree)
     color, strength = dice.color(0.2, 1.0), dice.number(0.2, 2.0)
-    if dice.chance(0.5):
+    kind = dice.pick({"plain": 1, "warm": 1, "computed": 2})
+    if kind == "warm":
         warm = trees.write(tree, "ShaderNodeBlackbody", {}, {"Temperature": dice.number(2000.0, 9000.0)})
         color = [warm, "Color"]
+    elif kind == "computed":
+        trees.budget = 5
+        color = [_positive(trees, tree, trees.value(tree, "c", 1)), "Vector"]
     if dice.chance(0.2):
+        falloff = trees.write(
+            tree, "ShaderNodeLightFalloff", {}, {"Strength": round(0.3 * strength, 3), "Smooth": dice.pick((0.0, 0.5, 4.0))}
+        )
+        strength = [falloff, dice.pick(("Quadratic", "Linear", "Constant"))]
+    elif dice.chance(0.2):
         strength = [
             trees.write(
                 tree, "ShaderNodeMath", {"operation": dice.pick(("MULTIPLY", "ADD"))}, {"Value": strength, "Value_001": 0.5}

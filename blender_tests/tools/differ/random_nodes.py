@@ -1,6 +1,6 @@
 """Random node trees: from the output upstream, each input left alone, set, or linked to a node that gives a value for it."""
 
-from . import closure_kinds, node_kinds, random_properties
+from . import closure_kinds, fact_kinds, node_kinds, random_properties
 from .record import Record
 
 UV_MAPS = ("UVMap", "Second", "", "Missing")
@@ -15,16 +15,18 @@ _ALPHAS = (1.0, 1.0, 0.5, 0.0)
 _DEEPEST = 4
 
 WORLDS = ("World", "Other world")
-# Cycles reads the transform of an object there, and crashes now and then.
-_UNDEFINED_IN_WORLDS = {"ShaderNodeNormalMap", "ShaderNodeTangent", "ShaderNodeBump"}
+_VALUES = {**node_kinds.VALUES, **fact_kinds.FACTS}
+# Nodes about surfaces, which worlds and lamps are not: Cycles reads the transform of an object there, and crashes now and then.
+_OF_SURFACES = {"ShaderNodeNormalMap", "ShaderNodeTangent", "ShaderNodeBump"} | fact_kinds.LOOKING
 
 
 class Trees:
     """Writes records of nodes; groups are written before the trees that use them."""
 
-    def __init__(self, dice, images, objects):
+    def __init__(self, dice, images, objects, luminaires):
         self.dice = dice
-        self.images, self.objects = images, objects
+        self.images, self.objects, self.luminaires = images, objects, luminaires
+        self.emitters = set(WORLDS)  # trees that are not of surfaces
         self.records = []
         self._count = 0
         self._groups, self._group_count = [], 0
@@ -73,9 +75,11 @@ class Trees:
         """A link to a node that gives a value."""
         if self.dice.chance(0.08) and depth < 3:
             return self._passed_on(tree, self._group(tree, wanted, depth))
-        left_out = _UNDEFINED_IN_WORLDS if tree in WORLDS else ()
-        kinds = {name: kind.weight for name, kind in node_kinds.VALUES.items() if name not in left_out}
-        return self._passed_on(tree, self._node(tree, self.dice.pick(kinds), wanted, depth, node_kinds.VALUES))
+        if self.budget > 2 and self.dice.chance(0.03):
+            return self._passed_on(tree, self._zone(tree, wanted, depth))
+        left_out = _OF_SURFACES if tree in self.emitters else ()
+        kinds = {name: kind.weight for name, kind in _VALUES.items() if name not in left_out}
+        return self._passed_on(tree, self._node(tree, self.dice.pick(kinds), wanted, depth, _VALUES))
 
     def _passed_on(self, tree, link):
         """The link, now and then by way of a reroute."""
@@ -89,7 +93,7 @@ class Trees:
         self.budget -= 1
         props = {key: dice.pick(choices) for key, choices in kind.props.items()}
         outputs = [key for key, type_ in kind.outputs.items() if type_ == wanted and dice.chance(0.7)] or list(kind.outputs)
-        if tree in WORLDS:
+        if tree in self.emitters:
             outputs = [key for key in outputs if key != "Tangent"] or ["Position"]
         output = dice.pick(outputs)
         if "data_type" in props and name == "ShaderNodeMix":
@@ -113,7 +117,7 @@ class Trees:
         if type_ == "s":
             return self._shader(tree, depth + 1) if dice.chance(0.93) else None
         if type_ in "na":
-            can_link = can_link and tree not in WORLDS
+            can_link = can_link and tree not in self.emitters
             wanted = node_kinds.NORMALS if type_ == "n" else ("ShaderNodeTangent",)
             link = self._at(tree, dice.pick(wanted), "v", depth) if can_link and dice.chance(0.12) else None
             # Whether light is before or behind a tangent, rounding decides; and which way a tangent along a normal points.
@@ -130,7 +134,7 @@ class Trees:
         return [dice.number(low, high) for _ in range(3)]
 
     def _at(self, tree, name, wanted, depth):
-        return self._passed_on(tree, self._node(tree, name, wanted, depth + 1, node_kinds.VALUES))
+        return self._passed_on(tree, self._node(tree, name, wanted, depth + 1, _VALUES))
 
     def _group(self, tree, wanted, depth):
         """A link to a group of a few nodes and its input; groups of one kind of output are used again."""
@@ -155,6 +159,18 @@ class Trees:
         inputs = {} if value is None else {"In": value}
         mute = wanted != "s" and dice.chance(0.05)
         return [self.write(tree, "ShaderNodeGroup", {"node_tree": f"@{name}"}, inputs, mute=mute), "Out"]
+
+    def _zone(self, tree, wanted, depth):
+        """A link to a repeat zone, whose item each iteration mixes with another value."""
+        dice = self.dice
+        self.budget -= 3
+        start = self.value(tree, wanted, depth + 1) if dice.chance(0.6) else None
+        end = self.write(tree, "GeometryNodeRepeatOutput", {}, {}, zone=wanted)
+        inputs = {"Iterations": dice.whole(0, 3), **({} if start is None else {"Item": start})}
+        read = [self.write(tree, "GeometryNodeRepeatInput", {}, inputs, pair=end), "Item"]
+        item = self._mixed_values(tree, wanted, read)
+        self.records.append(Record("link", f"{end[1:]} item", {"node": end, "input": "Item", "source": item}))
+        return [end, "Item"]
 
     def _mixed_values(self, group, wanted, read):
         inside = self.value(group, wanted, 1)
@@ -181,6 +197,10 @@ class Trees:
         elif special == "image":
             if self.images and dice.chance(0.97):
                 props["image"] = f"@{dice.pick(self.images)}"
+        elif special == "photometry":
+            props["mode"] = "INTERNAL"
+            if self.luminaires and dice.chance(0.97):
+                props["ies"] = f"@{dice.pick(self.luminaires)}"
         elif special == "mapping":
             if dice.chance(0.08):
                 more["mapping"] = {

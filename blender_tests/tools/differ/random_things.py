@@ -203,7 +203,7 @@ class Things:
         """The first thing again, by a collection or on the corners or faces of another mesh."""
         dice = self.dice
         if dice.chance(0.5):
-            fields = {"objects": ["@Thing 1", *(["@Lamp 1 object"] if dice.chance(0.3) else [])], "only": dice.chance(0.3)}
+            fields = {"objects": ["@Thing 1", *(["@Lamp 1 object"] if dice.chance(0.5) else [])], "only": dice.chance(0.3)}
             self.records.append(Record("collection", "Copies", fields))
             for number in range(dice.whole(1, 2)):
                 place = {
@@ -226,6 +226,9 @@ class Things:
         self._mesh("Seed mesh", dice.pick(("cube", "ball")))
         self._object("Seed", "Seed mesh", [0.0, 0.0, 0.0], scale=[0.3, 0.3, 0.2])
         self.records.append(Record("parent", "Seed", {"parent": "@Seats", "inverse": False}))
+        if dice.chance(0.3):
+            # A lamp on each seat, as far away as lamps are.
+            self.records.append(Record("parent", "Lamp 1 object", {"parent": "@Seats", "inverse": True}))
 
     def _collection(self):
         dice = self.dice
