@@ -42,7 +42,7 @@ def describe(seed):
     for record in lamps:
         if record.verb == "lamp" and dice.chance(0.3):
             record.fields["nodes"] = True
-            random_emitters.lamp_tree(trees, record.name)
+            random_emitters.lamp_tree(trees, record.name, record.fields["type"] == "SUN")
     kinds = {
         record.fields["kind"]
         for record in trees.records

@@ -103,10 +103,13 @@ def _picture(trees, tree, image):
     return trees.write(tree, "ShaderNodeTexEnvironment", props, inputs)
 
 
-def lamp_tree(trees, tree):
-    """Light of one colour, of a temperature or of computed nodes, of a strength that may fall otherwise with the distance."""
+def lamp_tree(trees, tree, is_far):
+    """Light of one colour, of a temperature or of computed nodes, of a strength that may fall otherwise with the distance.
+
+    is_far: whether it has no distance.
+    """
     dice = trees.dice
-    trees.emitters.add(tree)
+    trees.add_lamp(tree, is_far)
     color, strength = dice.color(0.2, 1.0), dice.number(0.2, 2.0)
     kind = dice.pick({"plain": 1, "warm": 1, "computed": 2})
     if kind == "warm":
@@ -115,7 +118,7 @@ def lamp_tree(trees, tree):
     elif kind == "computed":
         trees.budget = 5
         color = [_positive(trees, tree, trees.value(tree, "c", 1)), "Vector"]
-    if dice.chance(0.2):
+    if dice.chance(0.2) and not is_far:
         falloff = trees.write(
             tree, "ShaderNodeLightFalloff", {}, {"Strength": round(0.3 * strength, 3), "Smooth": dice.pick((0.0, 0.5, 4.0))}
         )

@@ -16,8 +16,12 @@ _DEEPEST = 4
 
 WORLDS = ("World", "Other world")
 _VALUES = {**node_kinds.VALUES, **fact_kinds.FACTS}
-# Nodes about surfaces, which worlds and lamps are not: Cycles reads the transform of an object there, and crashes now and then.
+# Nodes about surfaces, which worlds and lamps are not, and about objects, which worlds are not: there Cycles reads the
+# transform of an object, and crashes now and then.
 _OF_SURFACES = {"ShaderNodeNormalMap", "ShaderNodeTangent", "ShaderNodeBump"} | fact_kinds.LOOKING
+_OF_OBJECTS = _OF_SURFACES | {"ShaderNodeTexIES"}
+# Infinite where light comes from afar.
+_OF_LENGTHS = {"ShaderNodeLightFalloff"}
 
 
 class Trees:
@@ -26,13 +30,17 @@ class Trees:
     def __init__(self, dice, images, objects, luminaires):
         self.dice = dice
         self.images, self.objects, self.luminaires = images, objects, luminaires
-        self.emitters = set(WORLDS)  # trees that are not of surfaces
+        self.left_out = {world: _OF_OBJECTS | _OF_LENGTHS for world in WORLDS}  # kinds of nodes by trees of no surface
         self.records = []
         self._count = 0
         self._groups, self._group_count = [], 0
         self.budget = 0  # nodes that this tree may still have
         # Data behind a half transparent surface are those of a path that Cycles chooses by chance.
         self.is_opaque = False
+
+    def add_lamp(self, tree, is_far):
+        """Note that a tree is a lamp's."""
+        self.left_out[tree] = _OF_SURFACES | _OF_LENGTHS if is_far else _OF_SURFACES
 
     def material(self, tree):
         """The tree of a material: surface, and now and then displacement."""
@@ -77,7 +85,7 @@ class Trees:
             return self._passed_on(tree, self._group(tree, wanted, depth))
         if self.budget > 2 and self.dice.chance(0.03):
             return self._passed_on(tree, self._zone(tree, wanted, depth))
-        left_out = _OF_SURFACES if tree in self.emitters else ()
+        left_out = self.left_out.get(tree, ())
         kinds = {name: kind.weight for name, kind in _VALUES.items() if name not in left_out}
         return self._passed_on(tree, self._node(tree, self.dice.pick(kinds), wanted, depth, _VALUES))
 
@@ -93,8 +101,8 @@ class Trees:
         self.budget -= 1
         props = {key: dice.pick(choices) for key, choices in kind.props.items()}
         outputs = [key for key, type_ in kind.outputs.items() if type_ == wanted and dice.chance(0.7)] or list(kind.outputs)
-        if tree in self.emitters:
-            outputs = [key for key in outputs if key != "Tangent"] or ["Position"]
+        if tree in self.left_out:
+            outputs = [key for key in outputs if key not in ("Tangent", "Ray Length")] or list(kind.outputs)[:1]
         output = dice.pick(outputs)
         if "data_type" in props and name == "ShaderNodeMix":
             output = {"RGBA": "Result_Color", "FLOAT": "Result_Float", "VECTOR": "Result_Vector"}[props["data_type"]]
@@ -117,7 +125,7 @@ class Trees:
         if type_ == "s":
             return self._shader(tree, depth + 1) if dice.chance(0.93) else None
         if type_ in "na":
-            can_link = can_link and tree not in self.emitters
+            can_link = can_link and tree not in self.left_out
             wanted = node_kinds.NORMALS if type_ == "n" else ("ShaderNodeTangent",)
             link = self._at(tree, dice.pick(wanted), "v", depth) if can_link and dice.chance(0.12) else None
             # Whether light is before or behind a tangent, rounding decides; and which way a tangent along a normal points.
@@ -140,12 +148,16 @@ class Trees:
         """A link to a group of a few nodes and its input; groups of one kind of output are used again."""
         dice = self.dice
         # No group holds itself: those that are not finished are not known yet.
-        known = [group for group in self._groups if group[1] == wanted]
+        # None has nodes that the tree may not have.
+        left_out = self.left_out.get(tree, set())
+        known = [group for group in self._groups if group[1] == wanted and self.left_out.get(group[0], set()) >= left_out]
         if known and dice.chance(0.4):
             name, _, source = dice.pick(known)
         else:
             self._group_count += 1
             name, source = f"Group {self._group_count}", dice.pick("fcv")
+            if left_out:
+                self.left_out[name] = left_out
             kept, self.records = self.records, []
             budget, self.budget = self.budget, dice.whole(2, 5)
             read = [self.write(name, "NodeGroupInput", {}, {}), "In"]
