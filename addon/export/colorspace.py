@@ -85,14 +85,18 @@ def _write(pixels, path):
 
 
 @contextlib.contextmanager
-def loaded(path, name, alpha_mode):
+def loaded(path, name, alpha_mode, frame=None):
     """Yield a file as a temporary Blender image outside the user's data.
 
     name: the colour space; "" lets Blender choose by the file, None is for data, whose values stay unchanged.
+    frame: the number of a movie's frame.
     """
     main_thread.look()
-    image, held = main_thread.run(lambda: _load(path, name, alpha_mode))
+    image, texture, held = main_thread.run(lambda: _load(path, name, alpha_mode, frame))
     try:
+        if texture is not None:
+            # Scripts read the pixels of the frame that was decoded last, for whatever reader.
+            texture.evaluate((0.0, 0.0, 0.0))
         yield image
     finally:
         main_thread.post(held.close)
@@ -103,16 +107,25 @@ def stored(path):
     return loaded(path, None, "CHANNEL_PACKED")
 
 
-def _load(path, name, alpha_mode):
-    """Return the image, whose pixels Blender reads on first access, and the ExitStack that frees it."""
+def _load(path, name, alpha_mode, frame=None):
+    """Return (image, texture, the ExitStack that frees them). Blender reads the image's pixels on first access.
+
+    texture: one that shows the frame of a movie; None without a frame.
+    """
     with contextlib.ExitStack() as stack:
-        image = stack.enter_context(_own_data()).images.load(path, check_existing=False)
+        data = stack.enter_context(_own_data())
+        image = data.images.load(path, check_existing=False)
         if name is None:
             image.colorspace_settings.is_data = True
         elif name:
             image.colorspace_settings.name = name
         image.alpha_mode = alpha_mode
-        return image, stack.pop_all()
+        texture = None
+        if frame is not None:
+            texture = data.textures.new("Lancer", "IMAGE")
+            texture.image = image
+            texture.image_user.frame_current = frame
+        return image, texture, stack.pop_all()
 
 
 @contextlib.contextmanager

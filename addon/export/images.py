@@ -12,6 +12,7 @@ from ..host import main_thread
 from ..host.by_scene import identity
 from ..messages.severity import Severity
 from .colorspace import IDENTITY, conversion, convert, floats, loaded, stored
+from .frames import shown
 from .gaps import mended
 
 _VALUES_AT_ONCE = 1 << 18  # converted in one pass, small enough for the processor's cache
@@ -31,6 +32,7 @@ class Images:
         self.list = []
         self.placed = 0  # images so far, those included that are not used any more
         self.obey = obey
+        self.frame = 1  # of the scene
         self._kept = kept
         self._ranges = {}
         self._tables = {}
@@ -38,16 +40,16 @@ class Images:
 
     def numbers(self, image, user, tell):
         """Return (first, count) of a Blender image, one for each tile; None if it cannot be read. tell(text, key, severity)."""
-        path = _frame_path(image, user, tell)
-        key = (identity(image), image.colorspace_settings.name, image.alpha_mode, path)
+        seen = shown(image, user, self.frame)
+        key = (identity(image), image.colorspace_settings.name, image.alpha_mode, seen)
         if key not in self._ranges:
             with main_thread.obeying(self.obey):
                 read = _read_all if self._kept is None else self._kept.pictures(_read_all)
-                pictures = read(image, path, tell)
+                pictures = read(image, seen, tell)
             self._ranges[key] = (self.repeat(pictures), len(pictures)) if pictures else None
         if self._ranges[key] is None:
             tell(
-                f"image '{image.name}' has no pixels ({path or image.filepath or 'empty'}), magenta is used",
+                f"image '{image.name}' has no pixels ({seen.path or image.filepath or 'empty'}), magenta is used",
                 severity=Severity.WRONG,
             )
         return self._ranges[key]
@@ -97,29 +99,13 @@ class NoPictures:
         return 0
 
 
-def _frame_path(image, user, tell):
-    """Return the file of a sequence's current frame; "" if the image is no sequence."""
-    if image.source != "SEQUENCE":
-        return ""
-    if user is None:
-        # The node's ImageUser maps frames to files; without one Blender would return the file of frame 0.
-        tell(
-            f"image '{image.name}' is a sequence, only the file from which it was made is used",
-            "feature:image sequence",
-        )
-        path = image.filepath
-    else:
-        path = image.filepath_from_user(image_user=user)
-    return bpy.path.abspath(path, library=image.library)
-
-
-def _read_all(image, path, tell):
+def _read_all(image, seen, tell):
     if image.source == "TILED":
         return [picture for tile in image.tiles for picture in _read_tile(image, tile.number, tell)]
-    if path:
-        return _read_file(image, path, tell)
     if image.source == "MOVIE":
-        tell(f"image '{image.name}' is a movie, only the frame that Blender shows is used", "feature:movie as image")
+        return _read_decoded(image, seen.path, tell, frame=seen.frame)
+    if image.source == "SEQUENCE":
+        return _read_file(image, seen.path, tell)
     # Blender's bytes in memory equal the file's, unless Blender has divided them by alpha.
     is_file = image.source == "FILE" and image.packed_file is None and not image.is_dirty
     if is_file and (not image.has_data or image.is_float or image.alpha_mode == "PREMUL"):
@@ -173,13 +159,19 @@ def _read_packed(image, number, tell):
     try:
         with open(path, "wb") as file:
             file.write(packed.packed_file.data)
-        with loaded(path, image.colorspace_settings.name, image.alpha_mode) as source:
-            return _read(image, source, tell, _space(source), number)
-    except RuntimeError:
-        return []
+        return _read_decoded(image, path, tell, number)
     finally:
         if os.path.exists(path):
             os.remove(path)
+
+
+def _read_decoded(image, path, tell, tile=0, frame=None):
+    """Read a file, or a movie's frame, as Blender decodes it under the settings of image."""
+    try:
+        with loaded(path, image.colorspace_settings.name, image.alpha_mode, frame) as source:
+            return _read(image, source, tell, _space(source), tile)
+    except RuntimeError:
+        return []
 
 
 def _read(image, source, tell, space, tile=0, path=""):

@@ -64,12 +64,12 @@ class Kept:
     def pictures(self, read_all):
         """Return a _read_all of images.py that looks in the cache first and repeats the messages of cached images."""
 
-        def read_again(image, path, tell):
+        def read_again(image, seen, tell):
             def make():
                 told = []
-                return read_all(image, path, lambda *given, **named: told.append((given, named))), told
+                return read_all(image, seen, lambda *given, **named: told.append((given, named))), told
 
-            found, told = self._get("images", image.name_full, _sources_of_image(image, path), make)
+            found, told = self._get("images", image.name_full, _sources_of_image(image, seen), make)
             for given, named in told:
                 tell(*given, **named)
             return found
@@ -170,19 +170,19 @@ def _sources_of_normals(mesh):
         yield look(mesh.corner_normals, "vector", np.float32, 3)
 
 
-def _sources_of_image(image, path):
+def _sources_of_image(image, seen):
     """Return the file identity and the settings of an image; None if its pixels can change without changing these."""
-    if image.is_dirty or image.source in ("MOVIE", "VIEWER"):
+    if image.is_dirty or image.source == "VIEWER":
         return None
-    settings = (image.source, image.alpha_mode, image.colorspace_settings.name, image.has_data, image.filepath, path)
+    settings = (image.source, image.alpha_mode, image.colorspace_settings.name, image.has_data, image.filepath, seen)
     working = getattr(getattr(bpy.data, "colorspace", None), "working_space", "")
     if image.source == "GENERATED":
         made = image.generated_type, *image.generated_color, image.generated_width, image.generated_height, image.is_float
         return (*settings, working, *made)
     packed = tuple(item.packed_file for item in image.packed_files) or ((image.packed_file,) if image.packed_file else ())
-    if packed and not path:
+    if packed and not seen.path:
         return (*settings, working, *(hashlib.sha256(item.data).digest() for item in packed if item is not None))
-    files = _files_of(image, path)
+    files = _files_of(image, seen.path)
     return None if files is None else (*settings, working, *files)
 
 

@@ -60,6 +60,7 @@ def export_scene(depsgraph, options=None, poll=None):
             snapshot, messages = again
             return snapshot.replaced(camera=camera, settings=settings), messages
     images = Images(obey, options.kept) if parts is None else parts.images
+    images.frame = scene.frame_current
     shaders = ShaderCache(images) if parts is None else parts.shaders
     materials = Materials(messages, override, images, depsgraph, shaders)
     instances = Instances(depsgraph, materials, messages, shaders, options.kept, parts, options.space)

@@ -118,6 +118,16 @@ def test_tiles_sequences_and_what_is_missing(case):
     assert got["unchanged"]
 
 
+def test_movies_show_the_frame_of_each_node(case):
+    got = case("movie")
+    # Frame n of the movie has the value 0.1 n; the second node starts two frames earlier.
+    frames = [[51, 102], [51, 102], [77, 128]]
+    assert got["exports"] == got["viewed"] == frames
+    # Two frames are read, kept, and replaced by two others.
+    assert got["counts"] == [[2, 0], [0, 2], [2, 0]]
+    assert got["unchanged"]
+
+
 def test_multilayer_files_are_told(case):
     got = case("layered")
     assert [np.array(picture["texels"]).tolist() for picture in got["images"]] == [[[[0.5, 0.5, 0.5]]]]

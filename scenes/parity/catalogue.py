@@ -20,6 +20,7 @@ SUBJECTS = (
     "furnaces_principled",
     "textures_images",
     "textures_files",
+    "textures_frames",
     "textures_coordinates",
     "inputs",
     "inputs_objects",

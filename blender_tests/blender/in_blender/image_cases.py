@@ -8,8 +8,12 @@ import numpy as np
 import stage
 from export_cases import export_told
 
+from addon.bindings import snapshot
 from addon.bindings.enums import AlphaMode, NodeKind, Transfer
-from scenes.parity import image_files
+from addon.export.kept import Kept
+from addon.export.parts import Parts
+from addon.export.scene import ExportOptions, export_scene
+from scenes.parity import avi, image_files
 
 SIZE = 8
 
@@ -203,6 +207,41 @@ def deep():
     for item in (held, painted):
         show(item)
     return answer()
+
+
+def movie():
+    """A movie and a sequence under several nodes, exported at two frames twice by an animation's cache and by a view's."""
+    scene = stage.empty()
+    path = os.path.join(tempfile.mkdtemp(), "movie.avi")
+    with open(path, "wb") as file:
+        file.write(avi.encode([np.full((4, 4, 3), 0.1 * number) for number in range(1, 6)]))
+    item = bpy.data.images.load(path)
+    users = []
+    for name, start, refresh in (("First", 1, True), ("Later", -1, False)):
+        user = show(item, name)[1].image_user
+        user.frame_start, user.frame_duration, user.use_auto_refresh = start, 5, refresh
+        users.append(user)
+    stage.camera()
+    before, kept, parts = (listed(), len(bpy.data.textures)), Kept(), Parts()
+    exports, counts, viewed = [], [], []
+    for frame in (2, 2, 3):
+        scene.frame_set(frame)
+        kept.next_picture()
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        exports.append(_reds(export_scene(depsgraph, ExportOptions(kept=kept))[0]))
+        counts.append([kept.counts["read_images"], kept.counts["kept_images"]])
+        viewed.append(_reds(export_scene(depsgraph, ExportOptions(view=snapshot.Camera(), parts=parts))[0]))
+    return {
+        "exports": exports,
+        "viewed": viewed,
+        "counts": counts,
+        "unchanged": before == (listed(), len(bpy.data.textures)),
+    }
+
+
+def _reds(given):
+    """Return the first byte of the image of each material."""
+    return [int(given.images[material.nodes[-1].image].texels[0, 0, 0]) for material in given.materials]
 
 
 def layered():

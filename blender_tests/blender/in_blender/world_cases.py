@@ -105,21 +105,28 @@ def export():
     return result
 
 
+def _numbered(folder, side, number, red):
+    """Write an image file whose name ends in a number; return its path."""
+    image = bpy.data.images.new(side, 4, 4)
+    image.generated_color = (red, 0.0, 0.0, 1.0)
+    image.filepath_raw, image.file_format = os.path.join(folder, f"{side}{number:04}.png"), "PNG"
+    image.save()
+    return image.filepath_raw
+
+
 def sequence():
-    """A cube of six files that are numbered like frames, where no current frame is known."""
+    """A cube of six files that are numbered like frames; one of them has a file for the scene's frame, too."""
     stage.empty()
     stage.sky()
     folder = tempfile.mkdtemp()
     own = bpy.context.scene.world.lancer
     own.use_cube = True
     for number, side in enumerate(CUBE_SIDES):
-        image = bpy.data.images.new(side, 4, 4)
-        image.generated_color = (0.1 * (number + 1), 0.0, 0.0, 1.0)
-        image.filepath_raw, image.file_format = os.path.join(folder, f"{side}0007.png"), "PNG"
-        image.save()
-        shown = bpy.data.images.load(image.filepath_raw)
+        shown = bpy.data.images.load(_numbered(folder, side, 7, 0.1 * (number + 1)))
         shown.source = "SEQUENCE"
         setattr(own, side, shown)
+    _numbered(folder, side, 12, 1.0)
     messages, images = Messages(), Images()
+    images.frame = 12
     _exported(messages, images)
     return {"red": [int(picture.texels[0, 0, 0]) for picture in images.list], "messages": messages.lines()}
