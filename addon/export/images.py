@@ -1,7 +1,9 @@
 """Images in their own bit depth, exported once however many materials use them."""
 
+import contextlib
 import hashlib
 import os
+import tempfile
 
 import bpy
 import numpy as np
@@ -14,9 +16,11 @@ from ..messages.severity import Severity
 from .colorspace import IDENTITY, conversion, convert, floats, loaded, stored
 from .frames import shown
 from .gaps import mended
+from .layered_exr import combined_pass, has_layers, shown_by_cycles
 
 _VALUES_AT_ONCE = 1 << 18  # converted in one pass, small enough for the processor's cache
 _WHITE = 65535.0
+_SHOWS_PACKED_LAYERS = bpy.app.version >= (4, 3)  # older Cycles finds no pixels, as scripts do
 _ASSOCIATED_FORMATS = ("OPEN_EXR", "OPEN_EXR_MULTILAYER", "HDR")  # formats that store colour multiplied by alpha
 
 
@@ -108,13 +112,17 @@ def _read_all(image, seen, tell):
         return _read_file(image, seen.path, tell)
     # Blender's bytes in memory equal the file's, unless Blender has divided them by alpha.
     is_file = image.source == "FILE" and image.packed_file is None and not image.is_dirty
-    if is_file and (not image.has_data or image.is_float or image.alpha_mode == "PREMUL"):
+    if is_file and (not image.has_data or image.is_float or image.alpha_mode == "PREMUL" or image.type == "MULTILAYER"):
         pictures = _read_file(image, bpy.path.abspath(image.filepath, library=image.library), tell)
         if pictures:
             return pictures
     # Free the pixels again if Blender had not loaded them before.
     had_data = image.has_data
-    pictures = _read(image, image, tell, _space(image))
+    # Blender tells the type only after it has read the file, and scripts cannot read the pixels of layers.
+    if min(image.size) < 1 and image.type == "MULTILAYER":
+        pictures = _read_packed_layers(image, tell)
+    else:
+        pictures = _read(image, image, tell, _space(image))
     if not had_data and not image.is_dirty:
         main_thread.run(image.buffers_free)
     return pictures
@@ -130,10 +138,50 @@ def _read_file(image, path, tell, tile=0):
     if not os.path.isfile(path):
         return []
     try:
-        with stored(path) as source:
-            return _read(image, source, tell, _space(image), tile, path)
+        if not has_layers(path):
+            with stored(path) as source:
+                return _read(image, source, tell, _space(image), tile, path)
+        with open(path, "rb") as file:
+            plain = shown_by_cycles(file.read())
+        with _temporary(plain.data, ".exr") as copy, stored(copy) as source:
+            return _read(image, source, tell, _space(image), tile, copy, plain.columns)
+    except ValueError as error:
+        return _unread_layers(image, error, tell, tile)
+    except (OSError, RuntimeError):
+        return []
+
+
+def _read_packed_layers(image, tell):
+    """Read a packed file of layers, whose first pass Cycles shows. Blender converts only colours to the working space."""
+    if not _SHOWS_PACKED_LAYERS:
+        return []
+    try:
+        plain = combined_pass(image.packed_file.data if image.packed_file is not None else b"")
+        name = image.colorspace_settings.name if len(plain.columns) > 2 else None
+        with _temporary(plain.data, ".exr") as path, loaded(path, name, image.alpha_mode) as source:
+            return _read(image, source, tell, _space(source), columns=plain.columns)
+    except ValueError as error:
+        return _unread_layers(image, error, tell)
     except RuntimeError:
         return []
+
+
+def _unread_layers(image, error, tell, tile=0):
+    text = f"is a multilayer EXR that cannot be read ({error}), save its layer as a plain EXR or PNG; mid-grey is used"
+    tell(f"image '{image.name}' {text}", "feature:multilayer EXR", severity=Severity.WRONG)
+    return [_picture(image, np.full((1, 1, 3), 0.5, np.float32), Transfer.LINEAR, AlphaMode.NONE, tile, IDENTITY)]
+
+
+@contextlib.contextmanager
+def _temporary(data, extension):
+    """Yield the path of a file with these bytes, removed on exit."""
+    number, path = tempfile.mkstemp(extension, "lancer_", bpy.app.tempdir)
+    try:
+        with open(number, "wb") as file:
+            file.write(data)
+        yield path
+    finally:
+        os.remove(path)
 
 
 def _read_tile(image, number, tell):
@@ -155,14 +203,8 @@ def _read_packed(image, number, tell):
     packed = next((item for item in image.packed_files if getattr(item, "tile_number", 0) == number), None)
     if packed is None or packed.packed_file is None:
         return []
-    path = os.path.join(bpy.app.tempdir, f"lancer_{os.getpid()}_{number}{os.path.splitext(packed.filepath)[1]}")
-    try:
-        with open(path, "wb") as file:
-            file.write(packed.packed_file.data)
+    with _temporary(packed.packed_file.data, os.path.splitext(packed.filepath)[1]) as path:
         return _read_decoded(image, path, tell, number)
-    finally:
-        if os.path.exists(path):
-            os.remove(path)
 
 
 def _read_decoded(image, path, tell, tile=0, frame=None):
@@ -174,21 +216,18 @@ def _read_decoded(image, path, tell, tile=0, frame=None):
         return []
 
 
-def _read(image, source, tell, space, tile=0, path=""):
+def _read(image, source, tell, space, tile=0, path="", columns=()):
     """Return a list with the image of source under the settings of image; empty if it has no pixels.
 
     path: the file that source reads with its stored values; its floating point values are in the image's colour space, as bytes
-    always are. Without a path they are in the working space.
+    always are. Without a path they are in the working space. columns: the channels of source to read; empty means all.
     """
     is_stored = bool(path)
     if min(source.size) < 1 or source.channels < 1:
-        # Blender sets the type only after it has read the file, and scripts cannot read the pixels of the layers.
-        if source.type == "MULTILAYER":
-            text = "is a multilayer EXR, save its layer as a plain EXR or PNG; mid-grey is used"
-            tell(f"image '{image.name}' {text}", "feature:multilayer EXR", severity=Severity.WRONG)
-            return [_picture(image, np.full((1, 1, 3), 0.5, np.float32), Transfer.LINEAR, AlphaMode.NONE, tile, IDENTITY)]
         return []
     values = floats(source)
+    if columns:
+        values = np.ascontiguousarray(values[:, :, columns])
     if source.is_float and not np.isfinite(values).all():
         values = _mended(image, values, tell, path)
     name, is_data = space

@@ -128,7 +128,15 @@ def test_movies_show_the_frame_of_each_node(case):
     assert got["unchanged"]
 
 
-def test_multilayer_files_are_told(case):
+def test_files_of_layers_show_their_first_channels(case):
     got = case("layered")
+    for codec, picture in zip(got["codecs"], got["images"], strict=True):
+        # Blender writes the pass Combined first; PXR24 keeps 15 bits after the point of a float.
+        assert np.allclose(picture["texels"], got["wanted"], rtol=2.0**-15), codec
+    assert got["messages"] == []
+
+
+def test_files_of_layers_that_cannot_be_read_are_told(case):
+    got = case("damaged_layers")
     assert [np.array(picture["texels"]).tolist() for picture in got["images"]] == [[[[0.5, 0.5, 0.5]]]]
-    assert len(got["messages"]) == 1 and "'layers' is a multilayer EXR, save its layer" in got["messages"][0]
+    assert len(got["messages"]) == 1 and "'layers' is a multilayer EXR that cannot be read (" in got["messages"][0]

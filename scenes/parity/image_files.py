@@ -72,10 +72,23 @@ def _exr_32(rows):
     return _exr(rows, "<f4", 2)
 
 
+def write_layers(stem, planes):
+    """Writes a file of layers and returns its path. planes: {name of a channel, as "Layer.Pass.R": (height, width)}."""
+    with open(stem + ".exr", "wb") as file:
+        file.write(_exr_of({name: plane[::-1] for name, plane in planes.items()}, "<f4", 2))
+    return stem + ".exr"
+
+
 def _exr(rows, dtype, number):
-    """Rows without compression, of any numbers; number: of the type of its channels, which are sorted by name."""
-    height, width, channels = rows.shape
-    names = {1: "Y", 3: "BGR", 4: "ABGR"}[channels]
+    """Rows without compression, of any numbers; number: of the type of its channels."""
+    names = {1: "Y", 3: "RGB", 4: "RGBA"}[rows.shape[2]]
+    return _exr_of({name: rows[:, :, channel] for channel, name in enumerate(names)}, dtype, number)
+
+
+def _exr_of(planes, dtype, number):
+    """The channels {name: rows}, which the file sorts by name."""
+    names = sorted(planes)
+    height, width = planes[names[0]].shape
     listed = b"".join(name.encode() + struct.pack("<xiiii", number, 0, 1, 1) for name in names) + b"\0"
     window = struct.pack("<4i", 0, 0, width - 1, height - 1)
     fields = (
@@ -91,7 +104,7 @@ def _exr(rows, dtype, number):
     head = struct.pack("<ii", 20000630, 2)
     head += b"".join(name + b"\0" + kind + b"\0" + struct.pack("<i", len(data)) + data for name, kind, data in fields) + b"\0"
     # Channels of a row follow one another.
-    lines = rows[:, :, ::-1].transpose(0, 2, 1).astype(dtype)
+    lines = np.stack([planes[name] for name in names], axis=1).astype(dtype)
     size = lines[0].nbytes
     places = struct.pack(f"<{height}q", *(len(head) + 8 * height + y * (8 + size) for y in range(height)))
     return head + places + b"".join(struct.pack("<ii", y, size) + line.tobytes() for y, line in enumerate(lines))

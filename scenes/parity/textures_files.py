@@ -6,6 +6,7 @@ import bpy
 import numpy as np
 
 from . import image_files, images
+from .boards import set_board, size_of, tile_mesh
 from .catalogue import case, variants
 from .nodes import material, world
 from .stages import camera, card
@@ -162,6 +163,47 @@ def image_depth_sequence(scene):
     user = next(node for node in thing.active_material.node_tree.nodes if node.type == "TEX_IMAGE").image_user
     user.frame_duration, user.frame_start, user.frame_offset, user.use_auto_refresh = 2, 1, 0, True
     scene.frame_set(2)
+
+
+# Channels of files with layers: the usual ones, four of which the first is no colour, three axes, and one number.
+_LAYERS = {
+    "combined": [*(f"View.Combined.{shade}" for shade in "RGBA"), "View.Depth.Z"],
+    "occlusion": [*(f"View.AO.{shade}" for shade in "RGB"), *(f"View.Combined.{shade}" for shade in "RGBA")],
+    "axes": [*(f"View.Normal.{axis}" for axis in "XYZ"), *(f"View.Other.{shade}" for shade in "RGB")],
+    "grey": ["A.Depth.Z", "B.Depth.Z"],
+    "mixed": ["R", "G", "B", "A", "Mask.R"],
+}
+
+
+def _layers(name, space="sRGB"):
+    pixels = _coarse(0.1, 1.0, channels=len(_LAYERS[name]))
+    path = image_files.write_layers(
+        os.path.join(bpy.app.tempdir, name), {channel: pixels[..., number] for number, channel in enumerate(_LAYERS[name])}
+    )
+    return image_files.load(path, space)
+
+
+def _of_image(image, output):
+    return lambda nodes: nodes.add("ShaderNodeTexImage", props={"image": image}).outputs[output]
+
+
+@case(size=size_of(2 * len(_LAYERS)), bounces=0, quick=True)
+def image_layers(scene):
+    """Colour and alpha of files with layers: Cycles shows the first four channels, whatever they are."""
+    mesh = tile_mesh()
+    pictures = [_layers(name) for name in _LAYERS]
+    set_board(scene, [(mesh, _of_image(image, output)) for image in pictures for output in ("Color", "Alpha")])
+
+
+@case(size=size_of(6), bounces=0, quick=True)
+def image_layers_packed(scene):
+    """Packed files of layers, of which Cycles shows the pass Combined or the only one."""
+    tiles = []
+    for name in ("combined", "occlusion", "grey"):
+        image = _layers(name)
+        image.pack()
+        tiles += [(tile_mesh(), _of_image(image, output)) for output in ("Color", "Alpha")]
+    set_board(scene, tiles)
 
 
 @variants(values={"png": "PNG", "exr": "OPEN_EXR"})

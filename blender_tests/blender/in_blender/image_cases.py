@@ -244,11 +244,32 @@ def _reds(given):
     return [int(given.images[material.nodes[-1].image].texels[0, 0, 0]) for material in given.materials]
 
 
+_CODECS = ("NONE", "RLE", "ZIPS", "ZIP", "PIZ", "PXR24")
+
+
 def layered():
-    """A file of many layers: Blender gives scripts no pixels of it."""
-    scene = stage.room(width=8, height=8)
-    path = stage.write_exr(scene, layers=True)
+    """Files of a render's layers under each compression, beside the plain picture."""
+    scene = stage.room(width=24, height=40, samples=1)
+    wanted = stage.picture(scene)
+    scene.view_layers[0].use_pass_normal = scene.view_layers[0].use_pass_z = True
+    paths = []
+    for codec in _CODECS:
+        scene.render.image_settings.exr_codec = codec
+        paths.append(stage.write_exr(scene, layers=True))
     stage.empty()
+    for codec, path in zip(_CODECS, paths, strict=True):
+        item = bpy.data.images.load(path)
+        item.name = codec
+        show(item)
+    return {**answer(), "codecs": _CODECS, "wanted": wanted[:, :, :3].tolist()}
+
+
+def damaged_layers():
+    """A file of layers whose pixels are missing behind the first rows."""
+    stage.empty()
+    planes = {f"{part}.Pass.{shade}": np.full((SIZE, SIZE), 0.5) for part in "AB" for shade in "RGB"}
+    path = image_files.write_layers(os.path.join(tempfile.mkdtemp(), "layers"), planes)
+    os.truncate(path, os.path.getsize(path) // 2)
     item = bpy.data.images.load(path)
     item.name = "layers"
     show(item)
