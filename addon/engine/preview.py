@@ -42,7 +42,7 @@ def render(engine, depsgraph):
 
 
 def _render(engine, depsgraph, is_over):
-    snapshot, _ = export_scene(depsgraph, ExportOptions(engine.camera_override), is_over)
+    snapshot, _ = export_scene(depsgraph, ExportOptions(engine.camera_override, is_preview=True), is_over)
     settings = dataclasses.replace(snapshot.settings, samples=_SAMPLES, target_error=0.0, time_limit=0.0)
     snapshot.set("settings", settings)
     with lowered(lambda: Session.upload(snapshot, poll=is_over, release=True)) as session:

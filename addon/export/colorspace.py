@@ -91,15 +91,11 @@ def loaded(path, name, alpha_mode, frame=None):
     name: the colour space; "" lets Blender choose by the file, None is for data, whose values stay unchanged.
     frame: the number of a movie's frame.
     """
-    main_thread.look()
-    image, texture, held = main_thread.run(lambda: _load(path, name, alpha_mode, frame))
-    try:
+    with in_own_data(lambda data: _load(data, path, name, alpha_mode, frame)) as (image, texture):
         if texture is not None:
             # Scripts read the pixels of the frame that was decoded last, for whatever reader.
             texture.evaluate((0.0, 0.0, 0.0))
         yield image
-    finally:
-        main_thread.post(held.close)
 
 
 def stored(path):
@@ -107,25 +103,37 @@ def stored(path):
     return loaded(path, None, "CHANNEL_PACKED")
 
 
-def _load(path, name, alpha_mode, frame=None):
-    """Return (image, texture, the ExitStack that frees them). Blender reads the image's pixels on first access.
+def _load(data, path, name, alpha_mode, frame=None):
+    """Return (image, texture). Blender reads the image's pixels on first access. texture: one that shows the frame, or None."""
+    image = data.images.load(path, check_existing=False)
+    if name is None:
+        image.colorspace_settings.is_data = True
+    elif name:
+        image.colorspace_settings.name = name
+    image.alpha_mode = alpha_mode
+    if frame is None:
+        return image, None
+    texture = data.textures.new("Lancer", "IMAGE")
+    texture.image = image
+    texture.image_user.frame_current = frame
+    return image, texture
 
-    texture: one that shows the frame of a movie; None without a frame.
-    """
+
+@contextlib.contextmanager
+def in_own_data(make):
+    """Yield make(data), called in the main thread with a BlendData apart from the user's, which is freed on exit."""
+    main_thread.look()
+    made, held = main_thread.run(lambda: _hold(make))
+    try:
+        yield made
+    finally:
+        main_thread.post(held.close)
+
+
+def _hold(make):
+    """Return (make(data), the ExitStack that frees the data)."""
     with contextlib.ExitStack() as stack:
-        data = stack.enter_context(_own_data())
-        image = data.images.load(path, check_existing=False)
-        if name is None:
-            image.colorspace_settings.is_data = True
-        elif name:
-            image.colorspace_settings.name = name
-        image.alpha_mode = alpha_mode
-        texture = None
-        if frame is not None:
-            texture = data.textures.new("Lancer", "IMAGE")
-            texture.image = image
-            texture.image_user.frame_current = frame
-        return image, texture, stack.pop_all()
+        return make(stack.enter_context(_own_data())), stack.pop_all()
 
 
 @contextlib.contextmanager

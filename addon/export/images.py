@@ -17,9 +17,12 @@ from .colorspace import IDENTITY, conversion, convert, floats, loaded, stored
 from .frames import shown
 from .gaps import mended
 from .layered_exr import combined_pass, has_layers, shown_by_cycles
+from .missing import HAS_TEXEL, missing
+from .tiles import is_generated, path_of_tile, regenerated, shows_memory
 
 _VALUES_AT_ONCE = 1 << 18  # converted in one pass, small enough for the processor's cache
 _WHITE = 65535.0
+_SHOWS_STROKES = bpy.app.version >= (5, 2)  # older Cycles shows the file of an image with unsaved strokes
 _SHOWS_PACKED_LAYERS = bpy.app.version >= (4, 3)  # older Cycles finds no pixels, as scripts do
 _ASSOCIATED_FORMATS = ("OPEN_EXR", "OPEN_EXR_MULTILAYER", "HDR")  # formats that store colour multiplied by alpha
 
@@ -37,6 +40,7 @@ class Images:
         self.placed = 0  # images so far, those included that are not used any more
         self.obey = obey
         self.frame = 1  # of the scene
+        self.is_preview = False  # whether the images are shown in a preview of a material or a world
         self._kept = kept
         self._ranges = {}
         self._tables = {}
@@ -49,6 +53,9 @@ class Images:
         if key not in self._ranges:
             with main_thread.obeying(self.obey):
                 read = _read_all if self._kept is None else self._kept.pictures(_read_all)
+                # Cycles shows unsaved strokes in previews.
+                if self.is_preview and image.source == "FILE" and image.is_dirty:
+                    read = _read_memory
                 pictures = read(image, seen, tell)
             self._ranges[key] = (self.repeat(pictures), len(pictures)) if pictures else None
         if self._ranges[key] is None:
@@ -105,17 +112,29 @@ class NoPictures:
 
 def _read_all(image, seen, tell):
     if image.source == "TILED":
-        return [picture for tile in image.tiles for picture in _read_tile(image, tile.number, tell)]
+        return _read_tiles(image, tell)
     if image.source == "MOVIE":
         return _read_decoded(image, seen.path, tell, frame=seen.frame)
     if image.source == "SEQUENCE":
         return _read_file(image, seen.path, tell)
-    # Blender's bytes in memory equal the file's, unless Blender has divided them by alpha.
-    is_file = image.source == "FILE" and image.packed_file is None and not image.is_dirty
-    if is_file and (not image.has_data or image.is_float or image.alpha_mode == "PREMUL" or image.type == "MULTILAYER"):
-        pictures = _read_file(image, bpy.path.abspath(image.filepath, library=image.library), tell)
-        if pictures:
-            return pictures
+    if image.source == "VIEWER":
+        return []
+    if image.source == "FILE" and image.packed_file is None and not (image.is_dirty and _SHOWS_STROKES):
+        path = bpy.path.abspath(image.filepath, library=image.library)
+        if not os.path.isfile(path):
+            return []
+        if image.is_dirty:
+            text = f"image '{image.name}' has unsaved changes, its file is shown, as in Cycles"
+            tell(text, severity=Severity.HINT)
+            return _read_file(image, path, tell)
+        # Blender's bytes in memory equal the file's, unless Blender has divided them by alpha.
+        if not image.has_data or image.is_float or image.alpha_mode == "PREMUL" or image.type == "MULTILAYER":
+            return _read_file(image, path, tell)
+    return _read_memory(image, None, tell)
+
+
+def _read_memory(image, _, tell):
+    """Read the pixels that Blender has, or decodes from a packed file."""
     # Free the pixels again if Blender had not loaded them before.
     had_data = image.has_data
     # Blender tells the type only after it has read the file, and scripts cannot read the pixels of layers.
@@ -184,18 +203,34 @@ def _temporary(data, extension):
         os.remove(path)
 
 
-def _read_tile(image, number, tell):
+def _read_tiles(image, tell):
+    in_memory = shows_memory(image)
     if image.is_dirty:
-        tell(f"image '{image.name}' has tiles with unsaved changes, their files are used")
-    column, row = (number - 1001) % 10, (number - 1001) // 10
-    path = image.filepath.replace("<UDIM>", str(number)).replace("<UVTILE>", f"u{column + 1}_v{row + 1}")
-    path = bpy.path.abspath(path, library=image.library)
-    pictures = _read_packed(image, number, tell) or _read_file(image, path, tell, number)
-    if not pictures and len(image.tiles) == 1:
-        pictures = _read(image, image, tell, _space(image), number)
-    if not pictures:
-        tell(f"tile {number} of image '{image.name}' cannot be read ({path}), it is left out", severity=Severity.LEFT_OUT)
+        text = "those of tile 1001 alone are shown" if in_memory else "its files are shown, as in Cycles"
+        tell(f"image '{image.name}' has unsaved changes, {text}", severity=Severity.DIFFERENT if in_memory else Severity.HINT)
+    pictures = []
+    for tile in image.tiles:
+        found = (_read_tile_in_memory if in_memory else _read_tile)(image, tile, tell)
+        if not found:
+            path = path_of_tile(image, tile.number) or "no file"
+            text = f"tile {tile.number} of image '{image.name}' cannot be read ({path}), magenta is used"
+            tell(text, severity=Severity.WRONG)
+            found = [missing(image, tile.number)] if HAS_TEXEL else []
+        pictures += found
     return pictures
+
+
+def _read_tile(image, tile, tell):
+    return _read_packed(image, tile.number, tell) or _read_file(image, path_of_tile(image, tile.number), tell, tile.number)
+
+
+def _read_tile_in_memory(image, tile, tell):
+    if tile.number == 1001:
+        return _read(image, image, tell, _space(image), tile.number)
+    if not is_generated(tile):
+        return _read_tile(image, tile, tell)
+    with regenerated(image, tile) as source:
+        return _read(image, source, tell, _space(image), tile.number)
 
 
 def _read_packed(image, number, tell):

@@ -14,6 +14,7 @@ import numpy as np
 from .arrays import built_in, corner_vertices, look
 from .attributes import attribute_sources, color_attribute, read_uv_map, render_uv_map
 from .mesh import face_slots, read_positions
+from .tiles import path_of_tile
 
 _NEW_NORMALS = bpy.app.version >= (4, 1)
 
@@ -188,20 +189,14 @@ def _sources_of_image(image, seen):
 
 def _files_of(image, path):
     """Return path, time, size and inode of each file; None if one is missing."""
-    names = [path or image.filepath]
+    paths = [path or bpy.path.abspath(image.filepath, library=image.library)]
     if image.source == "TILED":
-        names = [image.filepath.replace("<UDIM>", str(tile.number)) for tile in image.tiles]
-        names = [_uv_tile(name, tile.number) for name, tile in zip(names, image.tiles, strict=True)]
+        paths = [path_of_tile(image, tile.number) for tile in image.tiles]
     found = []
-    for name in names:
+    for path in paths:
         try:
-            told = os.stat(bpy.path.abspath(name, library=image.library))
+            told = os.stat(path)
         except OSError:
             return None
-        found.append((name, told.st_mtime_ns, told.st_size, told.st_ino))
+        found.append((path, told.st_mtime_ns, told.st_size, told.st_ino))
     return found
-
-
-def _uv_tile(name, number):
-    column, row = (number - 1001) % 10, (number - 1001) // 10
-    return name.replace("<UVTILE>", f"u{column + 1}_v{row + 1}")

@@ -22,6 +22,7 @@ class ExportOptions:
     camera: object = None  # the camera object; None is the scene's
     passes: tuple = (Pass.COMBINED,)
     kept: object = None  # the Kept of earlier frames
+    is_preview: bool = False  # of a material, a world or a lamp
     # For a window:
     view: object = None  # a snapshot.Camera that replaces the camera object
     space: object = None  # the SpaceView3D, whose local view and filters exclude objects
@@ -60,7 +61,7 @@ def export_scene(depsgraph, options=None, poll=None):
             snapshot, messages = again
             return snapshot.replaced(camera=camera, settings=settings), messages
     images = Images(obey, options.kept) if parts is None else parts.images
-    images.frame = scene.frame_current
+    images.frame, images.is_preview = scene.frame_current, options.is_preview
     shaders = ShaderCache(images) if parts is None else parts.shaders
     materials = Materials(messages, override, images, depsgraph, shaders)
     instances = Instances(depsgraph, materials, messages, shaders, options.kept, parts, options.space)

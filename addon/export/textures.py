@@ -1,11 +1,6 @@
 """Image nodes: the image, its coordinates, interpolation and extension."""
 
-import bpy
-import numpy as np
-
-from ..bindings import snapshot
 from ..bindings.enums import (
-    AlphaMode,
     Coordinate,
     Environment,
     Extension,
@@ -19,6 +14,7 @@ from ..messages.severity import Severity
 from .arithmetic import divide, each
 from .coordinates import coordinate, mapping_matrix
 from .maths import transformed
+from .missing import HAS_TEXEL, MAGENTA, missing
 
 _INTERPOLATION = {
     "Linear": Interpolation.LINEAR,
@@ -28,10 +24,6 @@ _INTERPOLATION = {
 }
 _STRAIGHT_COLOR = 256
 _AXES = {"NONE": None, "X": 0, "Y": 1, "Z": 2}
-_MAGENTA = (1.0, 0.0, 1.0)
-# Before 5.2 Cycles clips the one texel that stands for a missing picture as any other.
-_CLIPS_MISSING = bpy.app.version < (5, 2)
-_MISSING = snapshot.Image("missing", np.array(((_MAGENTA,),), np.float32), alpha=AlphaMode.STRAIGHT)
 
 
 def _image_texture(graph, site, output):
@@ -39,10 +31,12 @@ def _image_texture(graph, site, output):
     is_alpha = output.identifier == "Alpha"
     found = _picture(graph, site)
     if found is None:
-        if not (_CLIPS_MISSING and node.extension == "CLIP") or graph.images is None:
-            return 1.0 if is_alpha else _MAGENTA
-        found = graph.images.repeat([_MISSING]), 1
+        if not (HAS_TEXEL and node.extension == "CLIP") or graph.images is None:
+            return 1.0 if is_alpha else MAGENTA
+        found = graph.images.repeat([missing(node.image)]), 1
     first, count = found
+    if node.projection == "BOX" and count > 1:
+        first, count = _tile_of_boxes(graph, site, first, count)
     vector = graph.linked(site, ("Vector",), None)
     if vector is None:
         vector = coordinate(graph, Coordinate.UV)
@@ -59,6 +53,14 @@ def _image_texture(graph, site, output):
         image_count=count,
     )
     return graph.emit(NodeKind.ALPHA, value) if is_alpha else value
+
+
+def _tile_of_boxes(graph, site, first, count):
+    """Return the range of tile 1001, which alone is projected from the sides of a box."""
+    if not HAS_TEXEL:
+        graph.tell(site, "projects tile 1001 alone from the sides of a box", "feature:box projection of tiles")
+    places = [number for number in range(first, first + count) if graph.images.list[number].tile == 1001]
+    return places[0] if places else graph.images.repeat([missing(site.node.image)]), 1
 
 
 def _environment_texture(graph, site, output):

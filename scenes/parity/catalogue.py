@@ -21,6 +21,7 @@ SUBJECTS = (
     "textures_images",
     "textures_files",
     "textures_frames",
+    "textures_tiles",
     "textures_coordinates",
     "inputs",
     "inputs_objects",
