@@ -68,6 +68,7 @@ def test_deep_files_keep_their_values_and_get_the_curve(case):
     assert images["held"]["transfer"] == "SRGB" and images["painted"]["transfer"] == ("SRGB" if shows_file else "LINEAR")
     assert got["unchanged"] and len(got["messages"]) == shows_file
     assert all("'painted' has unsaved changes, its file is shown" in line for line in got["messages"])
+    assert got["previewed stroke"] == 0.25
 
 
 def check_stored(picture, kind, values):

@@ -225,12 +225,13 @@ _NOON = {"sky_single_scattering_noon", "sky_multiple_scattering_noon"}
 _SINCE_50 = _SINCE_52 | _NOON | {"repeat_zones", "closure_zones", "bundles", "menus_and_groups"}
 _NOT_IN_3 = {"light_true_sphere_point", "light_true_sphere_spot", "pass_denoising_last_surface", "principled_film_thin"}
 _GONE_50 = {"sky_nishita_noon"}
+_GONE_52 = {"image_tiles_box"}
 _ABSENT = {
     "3.4": _SINCE_50 | _SINCE_45 | _NOT_IN_3,
     "4.2": _SINCE_50 | _SINCE_45,
     "4.5": _SINCE_50,
     "5.0": _SINCE_52 | _GONE_50,
-    "5.2": _GONE_50,
+    "5.2": _GONE_50 | _GONE_52,
 }
 
 
