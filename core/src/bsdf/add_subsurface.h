@@ -42,19 +42,21 @@ template <class F> void leave_below(Bsdf<F> &bsdf) {
   const MaskOf<F> leaving = bsdf.leaving;
   const V none(F(0.0f)), white(F(1.0f));
   V n = none;
-  bool dimmed = false;
+  MaskOf<F> dimmed = uniform<F>(false);
   for (int i = 0; i < bsdf.count; ++i) {
     Lobe<F> &lobe = bsdf.lobes[i];
     if (is_subsurface(lobe)) {
       n += abs(mean(lobe.color)) * bsdf.frames[lobe.frame].n;
-      dimmed = dimmed || (lobe.variant & kDimmedExit) != 0;
+      if (lobe.variant & kDimmedExit)
+        dimmed = dimmed | !black(lobe.color);
     }
     lobe.color = select(leaving, none, lobe.color);
   }
   bsdf.emission = select(leaving, none, bsdf.emission);
   bsdf.straight = select(leaving, none, bsdf.straight);
   Lobe<F> exit = make_matte<F>(Matte::BurleyExit, select(leaving, white, none));
-  if (!dimmed)
+  exit.alpha_x = select(dimmed, F(0.5f), F(0.0f));
+  if (!any(dimmed))
     exit.shape = LobeShape::Lambert;
   exit.frame = add_frame(bsdf, select(leaving, unit_or(n, bsdf.ns), none));
   if (bsdf.count == kMaxLobes)

@@ -202,9 +202,10 @@ template <class F> LANCER_LANE ColorValue<F> burley_eval(const Lobe<F> &lobe, co
   return {Vec3<F>(f * wi.z * kInvPi), warp_cosine_hemisphere_pdf(wi.z)};
 }
 
-template <class V> LANCER_LANE ColorValue<NumberOf<V>> burley_exit_eval(const V &wi) {
-  const NumberOf<V> pdf = warp_cosine_hemisphere_pdf(wi.z);
-  return {V((1.0f - 0.5f * schlick_weight(wi.z)) * pdf), pdf};
+// alpha_x: the share that Fresnel's weight may take, 1/2 or, for plain diffuse light, 0.
+template <class F> LANCER_LANE ColorValue<F> burley_exit_eval(const Lobe<F> &lobe, const Vec3<F> &wi) {
+  const F pdf = warp_cosine_hemisphere_pdf(wi.z);
+  return {Vec3<F>((1.0f - lobe.alpha_x * schlick_weight(wi.z)) * pdf), pdf};
 }
 
 template <class F> LANCER_LANE ColorValue<F> velvet_eval(const Lobe<F> &lobe, const Vec3<F> &wo, const Vec3<F> &wi) {
@@ -238,7 +239,7 @@ template <class F> LANCER_LANE ColorValue<F> matte_eval(const Lobe<F> &lobe, con
   case Matte::Burley:
     return where<F>(above, burley_eval(lobe, wo, wi));
   case Matte::BurleyExit:
-    return where<F>(above, burley_exit_eval(wi));
+    return where<F>(above, burley_exit_eval(lobe, wi));
   case Matte::Velvet:
     return where<F>(seen, velvet_eval(lobe, wo, wi));
   case Matte::DustSheen:
