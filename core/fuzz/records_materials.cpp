@@ -3,6 +3,7 @@
 
 #include "scene/lobe_inputs.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace lancer_fuzz {
@@ -107,6 +108,7 @@ lancer_principled Records::principled() {
   p.rules = bytes_.choice(LANCER_RULES_BLENDER_52 + 1);
   p.distribution = bytes_.rarely(100) ? uint32_t(LANCER_DISTRIBUTION_MULTI_GGX) : bytes_.choice(4);
   p.option = bytes_.choice(2);
+  p.subsurface_option = p.rules + 2 * p.option;
   using lancer::ParameterKind;
   const auto value = [&](ParameterKind kind, float given) {
     switch (kind) {
@@ -145,6 +147,13 @@ lancer_lobe Records::lobe() {
   lobe.rotation = parameter(0.0f, -1.0f, 1.0f);
   lobe.normal = vector();
   lobe.tangent = vector();
+  // Kinds of later versions stand in the place of mirrors with a distribution, so that the corpus keeps its meaning.
+  if (lobe.kind == LANCER_MIRROR && lobe.distribution > 0) {
+    lobe.kind = std::min<uint32_t>(LANCER_TOON + 2 * (lobe.distribution - 1) + lobe.option, LANCER_LOBE_KIND_COUNT);
+    lobe.roughness_across = lobe.edge;
+    lobe.offset = lobe.rotation;
+    lobe.option += lobe.kind == LANCER_SUBSURFACE ? lobe.rules : 0;
+  }
   if (lobe.kind == LANCER_PRINCIPLED && !bytes_.rarely(3))
     lobe.principled = keep(std::vector<lancer_principled>{principled()});
   return lobe;
@@ -169,6 +178,16 @@ lancer_material Records::material(const Filled &filled) {
   material.ambient = parameter(0.0f);
   material.displacement = vector();
   material.normal = vector();
+  // A portal is described by parts of the material, so that the corpus keeps its meaning.
+  if (material.material_index % 8 == 7) {
+    lancer_portal portal = {};
+    portal.moves = material.flags & 3;
+    portal.weight = material.transmittance;
+    portal.position = material.displacement;
+    portal.direction = material.normal;
+    material.portal_count = 1;
+    material.portals = keep(std::vector<lancer_portal>{portal});
+  }
   node_count_ = 0;
   return material;
 }

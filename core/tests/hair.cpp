@@ -30,6 +30,8 @@ struct Case {
   std::string name;
   std::function<Lobe<float>(const glm::vec3 &wo)> make;
   glm::vec3 wo;
+  // Cycles leaves out that tilted cones are wider or narrower: the largest tilt, two of the scales', times the tangent of wo.
+  double unnormalised = 0.0;
 
   double density(const Lobe<float> &lobe, const glm::vec3 &wi) const {
     if (is_hair(lobe, Hair::Chiang))
@@ -70,7 +72,10 @@ std::vector<Case> cases() {
                      const glm::vec3 ng = glm::normalize(glm::vec3(0.0f, -0.8f, 0.5f));
                      return make_chiang(white, along, around, 0.8f, 1.55f, 0.1f * tilt, {0.1f, 0.4f, 1.0f}, ng, rules);
                    },
-                   beside(sine)});
+                   beside(sine),
+                   rules == Rules::Blender3
+                       ? double{2.0f * 0.1f * tilt} * std::abs(double{sine}) / std::sqrt(1.0 - double{sine * sine})
+                       : 0.0});
       }
   return all;
 }
@@ -91,7 +96,7 @@ double over_sphere(const std::function<double(const glm::vec3 &)> &f) {
 TEST(Hair, DensitiesAreNormalised) {
   for (const Case &c : cases()) {
     const Lobe<float> lobe = c.make(c.wo);
-    EXPECT_NEAR(over_sphere([&](const glm::vec3 &wi) { return c.density(lobe, wi); }), 1.0, 2.5e-3) << c.name;
+    EXPECT_NEAR(over_sphere([&](const glm::vec3 &wi) { return c.density(lobe, wi); }), 1.0, 2.5e-3 + c.unnormalised) << c.name;
   }
 }
 

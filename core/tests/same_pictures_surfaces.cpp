@@ -140,7 +140,7 @@ TEST(SamePictures, LightBelowSurfaces) {
   stand.camera = make_camera(30, 20);
   stand.commit();
   stand.render();
-  EXPECT_EQ(stand.hash.value(), 0xdad0c8d85d8ee52cu);
+  EXPECT_EQ(stand.hash.value(), 0xdad1693c0a3e430cu);
 }
 
 TEST(SamePictures, MathsOfNodes) {

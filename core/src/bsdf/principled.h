@@ -210,8 +210,8 @@ void add_layers(Bsdf<F> &bsdf, const LobeInputs<F> &inputs, const PrincipledInpu
       if (any(below > kLeastLayer)) {
         F f0;
         const V inner = clamp01(color);
-        const bool skin = in.subsurface_option % 4 == static_cast<uint32_t>(SubsurfaceMethod::Skin);
-        const uint8_t entry = any(bent) ? add_frame(bsdf, n_reflect) : frame;
+        const bool skin = (in.subsurface_option & kMethodBits) == static_cast<uint32_t>(SubsurfaceMethod::Skin);
+        const uint8_t entry = add_frame(bsdf, select(below > kLeastLayer, n_reflect, none));
         Lobe<F> matt =
             make_matte<F>(Matte::Burley, add_subsurface(bsdf, entry,
                                                         {.option = in.subsurface_option,

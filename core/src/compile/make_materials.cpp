@@ -62,7 +62,7 @@ size_t add_principled(const LobeDescription &lobe, const PrincipledDescription &
   const size_t sheet = may_be_positive(in.thin_wall) ? 4 : 0;
   // Before Blender 4, plastic and metal are one lobe, and glass can be two.
   // The light below a surface has a lobe for the channels that walk, one for the others, and before Blender 4 a third.
-  const size_t below = may_be_positive(in.subsurface) ? (old ? 2 : 3) : 0;
+  const size_t below = may_be_positive(in.subsurface) ? (old ? 3 : 2) : 0;
   return sheet + below + size_t(sheen) + size_t(coat) + size_t(metal && !old) + (glass ? (old ? 2 : 1) : 0) + 2;
 }
 
