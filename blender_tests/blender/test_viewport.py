@@ -144,7 +144,7 @@ def test_a_view_renders_what_it_shows(window):
 def test_a_view_tells_what_it_loses(window):
     """The view reports messages of export, library and denoising, each once, and an unusable camera."""
     got = window("tells")
-    for word in ("Ambient Occlusion", "without area", "shown with its noise"):
+    for word in ("(Attribute)", "without area", "shown with its noise"):
         assert [line for line in got["lines"] if word in line and "times)" not in line], word
     # The face without area is a hint.
     assert got["text"].endswith("2 messages in the render properties")

@@ -90,8 +90,7 @@ def unknown():
     stage.empty()
     plain, shown = stage.light("POINT"), stage.light("POINT")
     tree, emission = _nodes(shown)
-    node = tree.nodes.new("ShaderNodeAmbientOcclusion")
-    tree.links.new(node.outputs["Color"], emission.inputs["Color"])
+    tree.links.new(stage.unknown(tree).outputs["Color"], emission.inputs["Color"])
     messages = Messages()
     share = _export(shown, messages).emission[0] / _export(plain, Messages()).emission[0]
     return [share, messages.lines()]

@@ -127,6 +127,13 @@ def shader(kind="ShaderNodeBsdfDiffuse", name="Material", **inputs):
     return material
 
 
+def unknown(tree, attribute="N"):
+    """Add a node that Lancer does not support: an attribute that Cycles computes."""
+    node = tree.nodes.new("ShaderNodeAttribute")
+    node.attribute_name = attribute
+    return node
+
+
 def room(**settings):
     """Return a scene with a plane, a cube, a lamp, a sky and a camera."""
     scene = empty(**settings)

@@ -22,7 +22,7 @@ def hair_models():
 def unknown_sources():
     """Link a node that Lancer does not support to inputs of every type."""
     tree = Tree("fed")
-    unknown = tree.node("AmbientOcclusion")
+    unknown = stage.unknown(tree.tree)
     node = tree.node("BsdfGlossy", distribution="GGX", Color=(0.9, 0.1, 0.1), Roughness=0.37)
     factor = next(socket for socket in unknown.outputs if socket.type == "VALUE")
     color = next(socket for socket in unknown.outputs if socket.type == "RGBA")

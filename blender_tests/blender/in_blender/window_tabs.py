@@ -54,8 +54,8 @@ def a_loss():
     bpy.ops.object.mode_set(mode="OBJECT")
     tree = show("Cube").active_material.node_tree
     body = next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")
-    unknown = tree.nodes.new("ShaderNodeAmbientOcclusion")
-    tree.links.new(unknown.outputs["AO"], body.inputs["Roughness"])
+    unknown = stage.unknown(tree)
+    tree.links.new(unknown.outputs["Fac"], body.inputs["Roughness"])
 
 
 def a_model():
