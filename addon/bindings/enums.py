@@ -93,6 +93,7 @@ class Ray(IntFlag):
     TRANSMISSION = 8
     SHADOW = 16
     VOLUME = 32
+    RAYCAST = 64
 
 
 class InstanceFlag(IntFlag):

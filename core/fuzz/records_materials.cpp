@@ -62,7 +62,7 @@ lancer_node Records::node(const Filled &filled, uint32_t at) {
   } else if (bytes_.rarely(100))
     node.flags = bytes_.below(node.kind == LANCER_NODE_WAVE || node.kind == LANCER_NODE_VECTOR_TRANSFORM ? 16
                               : node.kind == LANCER_NODE_BUMP                                            ? 8
-                              : node.kind == LANCER_NODE_MIX                                             ? 4
+                              : node.kind == LANCER_NODE_MIX || node.kind == LANCER_NODE_OCCLUSION       ? 4
                                                                                                          : 2);
   else if (bytes_.rarely(2))
     node.flags = ~0u;

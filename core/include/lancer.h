@@ -156,7 +156,8 @@ enum lancer_ray {
   LANCER_RAY_GLOSSY = 4,
   LANCER_RAY_TRANSMISSION = 8,
   LANCER_RAY_SHADOW = 16,
-  LANCER_RAY_VOLUME = 32
+  LANCER_RAY_VOLUME = 32,
+  LANCER_RAY_RAYCAST = 64 /* of a node RAYCAST */
 };
 
 enum lancer_instance_flag { LANCER_INSTANCE_HOLDOUT = 1 /* a hole in the picture: alpha 0 where it is visible */ };
@@ -311,7 +312,9 @@ enum lancer_node_kind {
    * inputs: distance, normal, the constant 0 = the shading normal. option: number of rays; flags 1: of the inside, 2: only its
    * own object occludes. Returns the open share */
   LANCER_NODE_OCCLUSION = 40,
-  LANCER_NODE_BEVEL = 41, /* inputs: radius, normal as OCCLUSION. option: number of rays. Returns a normal */
+  /* inputs: radius; a normal, to which the bevel's change is added, the constant 0 = none; the surface's own normal, as
+   * OCCLUSION's. option: number of rays. Returns a normal */
+  LANCER_NODE_BEVEL = 41,
   /* inputs: position; direction; length, in those of the direction. option 0: 1 if there is a hit, 1 if of its own object, the
    * distance; 1: position, 2: normal of the hit, else 0, 0, 0. flag 1: its own object alone */
   LANCER_NODE_RAYCAST = 42,

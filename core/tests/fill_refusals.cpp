@@ -36,7 +36,7 @@ TEST(FillRefusals, UnknownBits) {
     });
   };
   EXPECT_EQ(world(63), "");
-  EXPECT_EQ(world(64), "world: hidden_from 64 has bits beyond the last kind of ray");
+  EXPECT_EQ(world(128), "world: hidden_from 128 has bits beyond the last kind of ray");
   const auto light = [](uint32_t hidden_from) {
     return refusal([&](Description &description) {
       lancer_light l = point_light();

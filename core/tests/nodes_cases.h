@@ -314,6 +314,11 @@ inline std::vector<NodeCase> all_cases(Random &random) {
     options(LANCER_NODE_CURVES, 2, 4);
   options(LANCER_NODE_OBJECT_INFO, LANCER_OBJECT_COUNT);
   options(LANCER_NODE_LIGHT_PATH, LANCER_PATH_COUNT);
+  for (int i = 0; i < 4; ++i) {
+    options(LANCER_NODE_OCCLUSION, 3, 4);
+    options(LANCER_NODE_BEVEL, 3);
+    options(LANCER_NODE_RAYCAST, 3, 2);
+  }
   return cases;
 }
 

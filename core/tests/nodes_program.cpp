@@ -71,6 +71,10 @@ TEST(NodesProgram, RefusalsNameMaterialNodeAndValue) {
   EXPECT_EQ(refusal(node(LANCER_NODE_COUNT)),
             "material 'Wood': node 1: kind " + std::to_string(LANCER_NODE_COUNT) + " is unknown");
   EXPECT_EQ(refusal(node(LANCER_NODE_MATH, LANCER_MATH_COUNT)), "material 'Wood': node 1: option 41 >= 41 options");
+  for (const uint32_t kind : {LANCER_NODE_OCCLUSION, LANCER_NODE_BEVEL}) {
+    EXPECT_EQ(refusal(node(kind, LANCER_MOST_NODE_RAYS)), "");
+    EXPECT_EQ(refusal(node(kind, 129)), "material 'Wood': node 1: option 129 >= 129 options");
+  }
   EXPECT_EQ(refusal(add(result_of(1))), "material 'Wood': node 1: input 0 refers to node 1, which does not precede it");
   EXPECT_EQ(refusal(add(result_of(-2))), "material 'Wood': node 1: input 0 refers to node -2, which does not precede it");
   EXPECT_EQ(refusal(add(constant(0.0f), constant(0.0f, NAN, 0.0f))), "material 'Wood': node 1: input 1 is nan");

@@ -27,6 +27,8 @@ public:
   void any_hit(std::span<const Ray> rays, std::span<uint8_t> occluded, HitFilter &filter) const {
     find(rays, occluded, &filter);
   }
+  // Returns the accelerator of the same geometry without the priority order of coplanar faces.
+  virtual const Accelerator &without_order() const { return *this; }
   // Counts the work of closest_hit() or any_hit() on these rays; zeros unless this is the wide BVH.
   virtual TraversalCounts count(std::span<const Ray>, [[maybe_unused]] bool any) const { return {}; }
   virtual size_t bytes() const = 0;

@@ -29,7 +29,7 @@ struct NodeScene {
 struct alignas(64) LookingLanes {
   NodeRays *rays = nullptr;
   uint32_t used = 0, sharp = 0;
-  alignas(64) double offset[kBlockLanes]; // Surface::offset
+  alignas(64) double offset[kBlockLanes];                                   // Surface::offset
   uint32_t pixel[kBlockLanes], sample[kBlockLanes], dimension[kBlockLanes]; // of random numbers
 };
 

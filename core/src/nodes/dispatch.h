@@ -99,9 +99,9 @@ template <class F> Value<F> node_value(const Program &program, const Inputs<F> &
   case NodeKind::Sky:
     return sky_node(in, site);
   case NodeKind::Occlusion:
-    return occlusion_node(in, site, number_of(program, node));
+    return occlusion_node(in, site.standing(), number_of(program, node));
   case NodeKind::Bevel:
-    return bevel_node(in, site, number_of(program, node));
+    return bevel_node(in, site.standing(), number_of(program, node));
   case NodeKind::Raycast:
     return raycast_node(in, site);
   case NodeKind::ObjectInfo:

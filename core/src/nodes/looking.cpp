@@ -33,7 +33,8 @@ float open_share(NodeRays &rays, const LookingPlace &at, const glm::vec3 &n, dou
   uint32_t open = 0;
   for (uint32_t i = 0; i < count; ++i) {
     Ray ray = ray_from(at.surface, glm::dvec3(frame.to_world(warp_cosine_hemisphere(numbers.of(i)))), distance);
-    ray.kinds = RayKind::Shadow;
+    if (!alone)
+      ray.kinds = RayKind::Shadow;
     open += uint32_t(!rays.occluded(ray, alone ? at.surface.instance : kNone));
   }
   return float(open) / float(count);
@@ -99,7 +100,7 @@ glm::vec3 bevelled_normal(NodeRays &rays, const LookingPlace &at, double radius,
     }
   }
   const double length = glm::length(sum);
-  return length > 0.0 ? at.facing(glm::vec3(sum / length)) : at.facing(at.surface.ns);
+  return length > 0.0 ? at.facing(glm::vec3(sum / length)) : glm::vec3(0.0f);
 }
 
 } // namespace lancer

@@ -31,14 +31,14 @@ struct LookingPlace {
   glm::vec3 facing(const glm::vec3 &n) const { return backfacing ? -n : n; }
 };
 
-// Returns the share of rays that meet nothing within a distance (normalised units), cosine-distributed around n. count: of rays;
-// node: number of the node, whose random numbers are its own.
+// Returns the share of rays that meet nothing within a distance (normalised units), cosine-distributed around n. count: of
+// rays; node: number of the node, whose random numbers are its own.
 float open_share(NodeRays &rays, const LookingPlace &at, const glm::vec3 &n, double distance, uint32_t count, bool alone,
                  uint32_t node);
 
 // Returns the mean normal of the object's own surface within a radius (normalised units), on the side of the place's own: the
-// normal of an edge that is rounded. Weights fall with the cube of the distance to the radius; points are found by rays along
-// three axes (King et al., BSSRDF Importance Sampling, 2013).
+// normal of an edge that is rounded; 0 if no point is found. Weights fall with the cube of the distance to the radius; points
+// are found by rays along three axes (King et al., BSSRDF Importance Sampling, 2013).
 glm::vec3 bevelled_normal(NodeRays &rays, const LookingPlace &at, double radius, uint32_t count, uint32_t node);
 
 } // namespace lancer

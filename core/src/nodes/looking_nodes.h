@@ -5,6 +5,8 @@
 #include "nodes/site.h"
 #include "scene/geometry.h"
 
+#include <cmath>
+
 namespace lancer {
 namespace {
 
@@ -50,50 +52,64 @@ template <class F> Value<F> occlusion_node(const Inputs<F> &in, const Site<F> &s
   const Vector3<F> open = look_from<F>(site, [&](int i, const LookingPlace &place) {
     const glm::vec3 axis = lane_of<F>(n, i);
     const float reach = lane(distance, i);
-    if (!(reach > 0.0f) || in.node.option == 0 || axis == glm::vec3(0.0f))
+    // A normal that is not finite has no direction.
+    if (!(reach > 0.0f) || in.node.option == 0 || !(glm::dot(axis, axis) > 0.5f))
       return glm::vec3(1.0f);
-    return glm::vec3(open_share(*site.looking->rays, place, inside ? -axis : axis, double(reach) * scale, in.node.option, alone,
-                                number));
+    return glm::vec3(
+        open_share(*site.looking->rays, place, inside ? -axis : axis, double(reach) * scale, in.node.option, alone, number));
   });
   return scalar(open.x);
 }
 
-// Bevel: the normal of rounded edges, added to the change that another normal makes.
+// Bevel: the normal of rounded edges. Its difference from the surface's own is added to another normal, if one is given.
 template <class F> Value<F> bevel_node(const Inputs<F> &in, const Site<F> &site, uint32_t number) {
-  const Vector3<F> given = in.normal(1, site);
+  const Vector3<F> own = in.normal(2, site);
   if (!can_look(site))
-    return solid(given);
+    return solid(own);
   const F radius = in.scalar(0);
   const double scale = site.user_scale();
   const Vector3<F> rounded = look_from<F>(site, [&](int i, const LookingPlace &place) {
     const float reach = lane(radius, i);
-    if (!(reach > 0.0f) || in.node.option == 0 || !(site.looking->sharp >> (site.first + i) & 1))
-      return lane_of<F>(site.ns, i);
-    return bevelled_normal(*site.looking->rays, place, double(reach) * scale, in.node.option, number);
+    if (!(reach > 0.0f) || !std::isfinite(reach) || in.node.option == 0 || !(site.looking->sharp >> (site.first + i) & 1))
+      return lane_of<F>(own, i);
+    const glm::vec3 found = bevelled_normal(*site.looking->rays, place, double(reach) * scale, in.node.option, number);
+    return found == glm::vec3(0.0f) ? lane_of<F>(own, i) : found;
   });
-  return solid(in.node.inputs[1].varies() ? unit_or_zero(Vector3<F>(given + (rounded - site.ns))) : rounded);
+  const Parameter &given = in.node.inputs[1];
+  if (!given.varies() && given.value == glm::vec3(0.0f))
+    return solid(rounded);
+  return solid(unit_or_zero(Vector3<F>(in[1] + (rounded - own))));
 }
 
+// Whether a ray can be sent along a direction of this length, which is in double.
+inline bool is_way(double squared_length) { return squared_length > 0.0 && std::isfinite(squared_length); }
+
 // Raycast. option 0: whether it meets a surface, whether that is of its own object, and the distance; 1: the place; 2: the
-// normal there. flags 1: only its own object.
-template <class F> Value<F> raycast_node(const Inputs<F> &in, const Site<F> &site) {
-  const F length = in.scalar(2), zero(0.0f);
+// normal there. flags 1: only its own object. moved: the site, which a bump may have moved from the place of the hit.
+template <class F> Value<F> raycast_node(const Inputs<F> &in, const Site<F> &moved) {
+  const F length_of_way = in.scalar(2), zero(0.0f);
+  const Site<F> &site = moved.standing();
   if (!can_look(site))
-    return in.node.option == 0 ? Value<F>{{zero, zero, length}, F(1.0f)} : solid(Vector3<F>(zero));
+    return in.node.option == 0 ? Value<F>{{zero, zero, length_of_way}, F(1.0f)} : solid(Vector3<F>(zero));
   const Vector3<F> start = in[0], way = in[1], here = narrow(user_position(site));
   const Vector3<DoubleOf<F>> from = from_user_world(site, widen(start));
   const double scale = site.user_scale();
+  const DoubleOf<F> step = length(Vector3<DoubleOf<F>>(moved.p - site.p)) / DoubleOf<F>(scale);
   const bool alone = (in.node.flags & 1) != 0;
   return solid(look_from<F>(site, [&](int i, const LookingPlace &place) {
-    const float reach = lane(length, i);
+    const float reach = lane(length_of_way, i);
     const glm::vec3 o = lane_of<F>(start, i), d = lane_of<F>(way, i);
+    const glm::dvec3 origin(lane(from.x, i), lane(from.y, i), lane(from.z, i)), along = glm::dvec3(d) * scale;
     const glm::vec3 missed = in.node.option == 0 ? glm::vec3(0.0f, 0.0f, reach) : glm::vec3(0.0f);
-    if (!(reach > 0.0f) || d == glm::vec3(0.0f))
+    if (!(reach > 0.0f) || !is_way(glm::dot(along, along)) || !std::isfinite(glm::dot(origin, origin)))
       return missed;
-    // A ray from the place itself does not meet the triangle there.
-    Ray ray = ray_from(place.surface, glm::dvec3(d) * scale, double(reach));
+    // A ray from the place itself does not meet the triangle there. One from a place beside it, which a bump asks about, begins
+    // beyond that step, as in Cycles.
+    Ray ray = ray_from(place.surface, along, double(reach));
+    ray.kinds = alone ? ~0u : uint32_t(RayKind::Raycast);
+    ray.tmin = 1.1 * lane(step, i);
     if (o != lane_of<F>(here, i)) {
-      ray.o = glm::dvec3(lane(from.x, i), lane(from.y, i), lane(from.z, i));
+      ray.o = origin;
       ray.skip_instance = ray.skip_primitive = kNone;
     }
     const Hit hit = site.looking->rays->closest(ray, alone ? place.surface.instance : kNone);

@@ -69,11 +69,11 @@ template <class F> struct Site {
   NodeScene scene;
   const LookingLanes *looking = nullptr; // as in NodeBlock
   int first = 0;                         // the first of its lanes
-  bool surface = false;        // else a direction of the world
-  bool placed = false;         // lanes have instances
-  bool together = false;       // and all lanes have the same one
-  bool in_height = false;      // a BUMP is evaluating its height
-  const Site *still = nullptr; // then, the site of the bump itself
+  bool surface = false;                  // else a direction of the world
+  bool placed = false;                   // lanes have instances
+  bool together = false;                 // and all lanes have the same one
+  bool in_height = false;                // a BUMP is evaluating its height
+  const Site *still = nullptr;           // then, the site of the bump itself
   const Instance *instance[kWidth];
   const Mesh *mesh[kWidth]; // null on exact surfaces
   uint32_t primitive[kWidth];

@@ -9,7 +9,7 @@ namespace lancer {
 
 // clang-format off
 struct RayKind { enum : uint32_t {
-  Camera = 1, Diffuse = 2, Glossy = 4, Transmission = 8, Shadow = 16, Volume = 32
+  Camera = 1, Diffuse = 2, Glossy = 4, Transmission = 8, Shadow = 16, Volume = 32, Raycast = 64
 }; };
 struct NodeKind { enum : uint32_t {
   Coordinate = 0, Attribute = 1, Image = 2, Environment = 3, Alpha = 4, Mapping = 5, Transform = 6, Math = 7, VectorMath = 8,

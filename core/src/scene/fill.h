@@ -17,7 +17,7 @@ inline std::string to_text(float value) {
 }
 
 inline void check_rays(const std::string &object, uint32_t hidden_from) {
-  if (hidden_from >= 2 * LANCER_RAY_VOLUME)
+  if (hidden_from >= 2 * LANCER_RAY_RAYCAST)
     bad_argument(object + ": hidden_from " + std::to_string(hidden_from) + " has bits beyond the last kind of ray");
 }
 

@@ -87,8 +87,9 @@ Shape shape_of(const lancer_node &node) {
   case LANCER_NODE_IES:
     return {2, 0, false};
   case LANCER_NODE_OCCLUSION:
-  case LANCER_NODE_BEVEL:
     return {2, LANCER_MOST_NODE_RAYS + 1, false};
+  case LANCER_NODE_BEVEL:
+    return {3, LANCER_MOST_NODE_RAYS + 1, false};
   case LANCER_NODE_RAYCAST:
     return {3, 3, false};
   case LANCER_NODE_VECTOR_TRANSFORM:

@@ -43,9 +43,7 @@ Schedule Program::schedule(std::span<const Parameter> parameters) const {
   return result;
 }
 
-bool looks_around(uint32_t kind) {
-  return kind == NodeKind::Occlusion || kind == NodeKind::Bevel || kind == NodeKind::Raycast;
-}
+bool looks_around(uint32_t kind) { return kind == NodeKind::Occlusion || kind == NodeKind::Bevel || kind == NodeKind::Raycast; }
 
 bool asks_no_place(uint32_t kind) {
   switch (kind) {

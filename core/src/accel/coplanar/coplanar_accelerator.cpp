@@ -20,6 +20,7 @@ public:
   CoplanarAccelerator(std::unique_ptr<Accelerator> a, PlaneRule r, size_t instances)
       : inner(std::move(a)), rule(std::move(r)), everything(instances, 1) {}
 
+  const Accelerator &without_order() const override { return *inner; }
   TraversalCounts count(std::span<const Ray> rays, bool any) const override { return inner->count(rays, any); }
   size_t bytes() const override { return inner->bytes() + rule.bytes() + everything.capacity(); }
   const char *instruction_set() const override { return inner->instruction_set(); }

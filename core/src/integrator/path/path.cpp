@@ -11,7 +11,7 @@ namespace lancer {
 namespace {
 
 // Density of directions below which a lobe is so wide that Cycles bevels nothing behind it.
-constexpr float kSharpDensity = 8.0f;
+constexpr double kSharpDensity = 8.0;
 // Number of walks below surfaces that fill the lanes of the stage.
 constexpr size_t kWorthWalking = 512;
 
@@ -427,7 +427,7 @@ void PathIntegrator::scatter(uint32_t lane, uint32_t branch) {
   Path &next = branch_off(next_.paths, lane, branch);
   next.scatter(beta, scatter_.kind(lane), block.diffuse >> lane & 1, block.transmitted >> lane & 1, block.pdf[lane] == 0.0);
   next.in_view = path.in_view && film_.stays_in_view(block, lane);
-  next.sharp = path.sharp && (block.pdf[lane] == 0.0 || block.pdf_scattered[lane] >= kSharpDensity);
+  next.sharp = path.sharp && (block.pdf[lane] == 0.0 || block.pdf[lane] >= kSharpDensity);
   next.length += surface_.distance(lane);
   film_.set_shares(path, next, block.share, lane);
   next_.from.push_back({get(surface_.surfaces().p, lane), get(surface_.lobes().ns, lane),

@@ -6,7 +6,8 @@
 namespace lancer {
 
 SceneNodeRays::SceneNodeRays(const Scene &scene)
-    : HitFilter(nullptr), scene_(scene), asked_(scene.geometry.instances.size(), 1) {
+    : HitFilter(nullptr), scene_(scene), alone_(scene.accelerator->without_order()),
+      asked_(scene.geometry.instances.size(), 1) {
   instances = asked_.data();
 }
 
@@ -17,7 +18,7 @@ bool SceneNodeRays::occluded(const Ray &ray, uint32_t instance) {
     return occluded != 0;
   }
   instance_ = instance;
-  scene_.accelerator->any_hit({&ray, 1}, {&occluded, 1}, *this);
+  alone_.any_hit({&ray, 1}, {&occluded, 1}, *this);
   return occluded != 0;
 }
 
@@ -28,7 +29,7 @@ Hit SceneNodeRays::closest(const Ray &ray, uint32_t instance) {
     return hit;
   }
   instance_ = instance;
-  scene_.accelerator->closest_hit({&ray, 1}, {&hit, 1}, *this);
+  alone_.closest_hit({&ray, 1}, {&hit, 1}, *this);
   return hit;
 }
 
@@ -37,7 +38,7 @@ std::span<const Hit> SceneNodeRays::all(const Ray &ray, uint32_t instance) {
   instance_ = instance;
   uint8_t occluded = 0;
   collects_ = true;
-  scene_.accelerator->any_hit({&ray, 1}, {&occluded, 1}, *this);
+  alone_.any_hit({&ray, 1}, {&occluded, 1}, *this);
   collects_ = false;
   // A filter may be asked about a hit twice, and in any order.
   std::ranges::sort(hits_, {}, [](const Hit &hit) { return std::pair(hit.primitive, hit.t); });

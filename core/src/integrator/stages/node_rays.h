@@ -23,6 +23,7 @@ private:
   bool counts(size_t ray, const Hit &hit) override;
 
   const Scene &scene_;
+  const Accelerator &alone_;   // for one instance: faces of others hide none of its own
   std::vector<uint8_t> asked_; // HitFilter::instances: all
   uint32_t instance_ = kNone;
   bool collects_ = false;
