@@ -2,61 +2,55 @@
 
 from ..bindings.enums import Coordinate, NodeKind, VectorOperation
 from .coordinates import coordinate
+from .settings import occlusion_distance, world_of
 
 _INSIDE, _ALONE = 1, 2  # flags of OCCLUSION
 _ONLY_LOCAL = 1  # flag of RAYCAST
 _OF_HIT = 0  # option of RAYCAST
 _HIT_FACTS = {"Is Hit": 0, "Self Hit": 1, "Hit Distance": 2}
 _HIT_PLACES = {"Hit Position": 1, "Hit Normal": 2}  # options of RAYCAST
-_FARTHEST = 3.0e38
+_NO_NORMAL = (0.0, 0.0, 0.0)
 
 
 def _occlusion(graph, site, output):
     node = site.node
     distance = graph.parameter(site, ("Distance",), 1.0)
     if distance == 0.0:
-        distance = _usual_distance(graph)
-    flags = _INSIDE * node.inside | _ALONE * node.only_local
+        distance = _distance_of_world(graph)
     normal = graph.linked(site, ("Normal",), graph.normal, evaluated=True)
+    flags = _INSIDE * node.inside | _ALONE * node.only_local
     share = graph.emit(NodeKind.OCCLUSION, distance, normal, option=node.samples, flags=flags)
     if output.identifier == "AO":
         return share
     return graph.vector_op(VectorOperation.SCALE, graph.value(site, "Color"), scale=share)
 
 
-def _usual_distance(graph):
+def _distance_of_world(graph):
     """Return the world's distance of ambient occlusion, which a constant distance of 0 stands for."""
-    scene = getattr(graph.depsgraph, "scene", None)
-    world = getattr(scene, "world", None)
-    return _FARTHEST if world is None else float(world.light_settings.distance)
+    graph.reads_layer = True
+    return occlusion_distance(None if graph.depsgraph is None else world_of(graph.depsgraph))
 
 
 def _bevel(graph, site, output):
-    normal = graph.linked(site, ("Normal",), graph.normal, evaluated=True)
+    normal = graph.linked(site, ("Normal",), _NO_NORMAL, evaluated=True)
     radius = graph.parameter(site, ("Radius",), 0.05)
-    return graph.emit(NodeKind.BEVEL, radius, normal, option=site.node.samples)
+    return graph.emit(NodeKind.BEVEL, radius, normal, graph.normal, option=site.node.samples)
 
 
 def _raycast(graph, site, output):
     name = output.identifier
     if name not in _HIT_FACTS and name not in _HIT_PLACES:
         graph.tell(site, f"the attribute '{output.name}' of the surface that is hit is not supported, 0 is used")
-        return (0.0, 0.0, 0.0) if output.type in ("VECTOR", "RGBA") else 0.0
+        return 0.0 if output.type in ("VALUE", "INT", "BOOLEAN") else (0.0, 0.0, 0.0)
     position = graph.linked(site, ("Position",), None, evaluated=True)
     if position is None:
         position = coordinate(graph, Coordinate.POSITION)
     direction = graph.linked(site, ("Direction",), None, evaluated=True)
     if direction is None:
-        direction = graph.normal if graph.normal != (0.0, 0.0, 0.0) else coordinate(graph, Coordinate.SHADING_NORMAL)
-    option = _HIT_PLACES.get(name, _OF_HIT)
-    value = graph.emit(
-        NodeKind.RAYCAST,
-        position,
-        direction,
-        graph.parameter(site, ("Length",), 1.0),
-        option=option,
-        flags=_ONLY_LOCAL * site.node.only_local,
-    )
+        direction = graph.normal if graph.normal != _NO_NORMAL else coordinate(graph, Coordinate.SHADING_NORMAL)
+    length = graph.parameter(site, ("Length",), 1.0)
+    option, flags = _HIT_PLACES.get(name, _OF_HIT), _ONLY_LOCAL * site.node.only_local
+    value = graph.emit(NodeKind.RAYCAST, position, direction, length, option=option, flags=flags)
     return graph.component(value, _HIT_FACTS[name]) if option == _OF_HIT else value
 
 

@@ -11,7 +11,7 @@ from .even_normals import with_even_normals
 from .images import Images
 from .instances import Instances
 from .materials import Materials
-from .settings import export_settings
+from .settings import export_settings, world_of
 from .shader_cache import ShaderCache
 from .unsupported import check_passes, check_scene, check_view_layer
 from .world import export_world
@@ -46,9 +46,9 @@ def export_scene(depsgraph, options=None, poll=None):
     view_layer = depsgraph.view_layer
     # Read camera and settings first, so that an error in them ends the export early.
     camera = options.view or export_camera(options.camera or scene.camera, depsgraph, messages)
-    # The view layer refers to original data without animation: use the evaluated copies.
-    world = _evaluated(getattr(view_layer, "world_override", None) or scene.world, depsgraph)
-    override = _evaluated(view_layer.material_override, depsgraph)
+    world = world_of(depsgraph)
+    # The view layer refers to original data without animation: use the evaluated copy.
+    override = view_layer.material_override and view_layer.material_override.evaluated_get(depsgraph)
     settings = export_settings(depsgraph, options.passes, world, messages)
     check_scene(scene, messages, in_view=options.view is not None)
     check_passes(scene, options.passes, messages)
@@ -91,7 +91,3 @@ def export_scene(depsgraph, options=None, poll=None):
         # The instance of a lamp moves with its instancer.
         parts.end(snapshot, messages, None if instances.has_lamp_instances else instances.places)
     return snapshot, messages
-
-
-def _evaluated(data, depsgraph):
-    return None if data is None else data.evaluated_get(depsgraph)

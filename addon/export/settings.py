@@ -59,18 +59,22 @@ def export_settings(depsgraph, passes, world, messages):
         passes=tuple(sorted({Pass.COMBINED, *passes})),
         threads=render.threads if render.threads_mode == "FIXED" else default_threads,
         accelerator=Accelerator[own.accelerator],
-        **_occlusion(world, messages),
+        occlusion_distance=occlusion_distance(world),
         # A layer with another world keeps the mist of the scene's, as in Cycles.
         **_mist(scene.world and scene.world.evaluated_get(depsgraph), messages),
     )
 
 
-def _occlusion(world, messages):
-    """Return the setting of the ambient occlusion pass; without a world, Cycles' default."""
-    if world is None:
-        return {"occlusion_distance": 10.0}
-    distance = messages.number(world.light_settings.distance, f"world '{world.name}'", "occlusion distance", 10.0, 0.0)
-    return {"occlusion_distance": distance}
+def world_of(depsgraph):
+    """Return the evaluated world of a depsgraph's view layer; None without one."""
+    world = getattr(depsgraph.view_layer, "world_override", None) or depsgraph.scene.world
+    # Both refer to original data without animation.
+    return None if world is None else world.evaluated_get(depsgraph)
+
+
+def occlusion_distance(world):
+    """Return the distance of ambient occlusion of a world; without one, Cycles' default."""
+    return 10.0 if world is None else world.light_settings.distance
 
 
 def _mist(world, messages):

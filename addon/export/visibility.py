@@ -12,6 +12,7 @@ _BITS = {
     "volume_scatter": Ray.VOLUME,
     "scatter": Ray.VOLUME,
     "shadow": Ray.SHADOW,
+    "raycast": Ray.RAYCAST,
 }
 
 

@@ -56,7 +56,7 @@ class LANCER_WORLD_PT_mist(LancerWorldPanel, bpy.types.Panel):
 
 
 class LANCER_WORLD_PT_ambient_occlusion(LancerWorldPanel, bpy.types.Panel):
-    bl_label = "Ambient Occlusion Pass"
+    bl_label = "Ambient Occlusion"
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context):
