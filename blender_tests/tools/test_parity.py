@@ -220,7 +220,8 @@ _KINDS = ("point", "spot", "sun", "area")
 _SINCE_45 = {"temperature_warm", "attribute_of_instance"} | {
     f"light_{name}_{kind}" for name in ("exposure", "normalize_off", "temperature") for kind in _KINDS
 }
-_SINCE_52 = {"constants_and_joined_bundles", "principled_wall_glass_smooth"}
+_RAYCASTS = {f"raycast_{name}" for name in ("distance", "normal", "beside", "local", "in_diffuse")}
+_SINCE_52 = {"constants_and_joined_bundles", "principled_wall_glass_smooth"} | _RAYCASTS
 _NOON = {"sky_single_scattering_noon", "sky_multiple_scattering_noon"}
 _SINCE_50 = _SINCE_52 | _NOON | {"repeat_zones", "closure_zones", "bundles", "menus_and_groups"}
 _NOT_IN_3 = {"light_true_sphere_point", "light_true_sphere_spot", "pass_denoising_last_surface", "principled_film_thin"}
@@ -243,7 +244,7 @@ _RULES = (
 _SHARES = {
     "lights": "lights_*",
     "materials": "materials_*,textures_*",
-    "nodes": "inputs,inputs_objects,inputs_instances,inputs_places,zones,zones_bundles,left_out,settings_of_nodes",
+    "nodes": "inputs,inputs_objects,inputs_instances,inputs_places,zones,zones_bundles,left_out,settings_of_nodes,looking",
     "others": "objects,cameras,passes_*,worlds,skies,films",
 }
 

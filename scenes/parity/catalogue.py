@@ -31,6 +31,7 @@ SUBJECTS = (
     "zones_bundles",
     "left_out",
     "settings_of_nodes",
+    "looking",
     "textures_normals",
     "textures_computed",
     "textures_patterns",
