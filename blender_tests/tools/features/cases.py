@@ -203,6 +203,14 @@ _CUT = Material(
 _BUMP = _nodes(
     (_UV, _PICTURE, _NORMAL, Node(NodeKind.BUMP, inputs=(1.0, 0.05, NodeRef(1), NodeRef(2), 1.0), first=0)), normal=NodeRef(3)
 )
+
+
+def _looking(kind, inputs, parameter, option):
+    """Return a matt material of which a node that sends rays gives a parameter."""
+    place = Node(NodeKind.COORDINATE, option=Coordinate.POSITION)
+    return _nodes((place, Node(kind, option=option, inputs=inputs)), **{parameter: NodeRef(1)})
+
+
 _SKY_NODES = (Node(NodeKind.COORDINATE), Node(NodeKind.ENVIRONMENT, inputs=(NodeRef(0),), image_count=1))
 
 CASES = (
@@ -242,6 +250,9 @@ CASES = (
         "colour by nodes (layer weight)",
         _nodes((_NORMAL, Node(NodeKind.LAYER_WEIGHT, inputs=(0.5, NodeRef(0)), option=1)), color=NodeRef(1)),
     ),
+    _surface("colour by ambient occlusion", _looking(NodeKind.OCCLUSION, (1.0,), "color", 16)),
+    _surface("normal by a bevel", _looking(NodeKind.BEVEL, (0.05,), "normal", 4)),
+    _surface("colour by a raycast", _looking(NodeKind.RAYCAST, (NodeRef(0), (0.0, 0.0, 1.0), 5.0), "color", 0)),
     _glowing("glowing mesh", Material(lobes=(), emission=(5, 5, 5))),
     _surface("hole in the picture by material", Material(lobes=(), holdout=1.0)),
     _surface("displacement", Material(displacement=(0.0, 0.0, 0.1), lobes=tiny.lambert(0.7).lobes)),
