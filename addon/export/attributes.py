@@ -10,7 +10,7 @@ from .islands import island_attribute
 from .pointiness import pointiness_attribute
 from .tangents import corner_tangents
 
-_TANGENT = "tangent:"
+TANGENT = "tangent:"
 _NAMED = "named:"
 # Requested like an attribute: the polygon of each triangle, for flat shading.
 POLYGONS = "polygons:"
@@ -41,28 +41,28 @@ def attribute_name(name):
     """Return the name of a Blender attribute in a snapshot, in which some names are reserved."""
     is_taken = (
         name in ("generated", ISLANDS, POINTINESS, POLYGONS, RENDER_COLOR)
-        or name.startswith((_TANGENT, _NAMED))
+        or name.startswith((TANGENT, _NAMED))
         or name.endswith(" ")
     )
     return _NAMED + name if is_taken else name
 
 
 def tangents_name(uv_map):
-    return _TANGENT + attribute_name(uv_map)
+    return TANGENT + attribute_name(uv_map)
 
 
 def has_tangents(mesh):
-    return any(attribute.name.startswith(_TANGENT) for attribute in mesh.attributes)
+    return any(attribute.name.startswith(TANGENT) for attribute in mesh.attributes)
 
 
 def lacks_tangents(mesh, name):
     """Whether an exported mesh has no tangents of the UV map that a node of the core names."""
-    return not any(attribute.name == _TANGENT + name for attribute in mesh.attributes)
+    return not any(attribute.name == TANGENT + name for attribute in mesh.attributes)
 
 
 def named_attributes(wanted):
     """Return the names in Blender of the wanted attributes of a mesh, without those that Lancer computes."""
-    own = (_TANGENT, POLYGONS, RENDER_COLOR)
+    own = (TANGENT, POLYGONS, RENDER_COLOR)
     return sorted(name_in_blender(name) for name in wanted if name != "generated" and not name.startswith(own))
 
 
@@ -80,7 +80,7 @@ def read_attributes(mesh, data, wanted, corners, faces, poll):
         poll()
         if name == "generated":
             found.append(_generated(mesh))
-        elif name.startswith(_TANGENT):
+        elif name.startswith(TANGENT):
             found.append(_tangents(mesh, data, name, corners, poll))
         elif name == ISLANDS:
             found.append(island_attribute(mesh, name, data.triangles, poll))
@@ -121,13 +121,13 @@ def _tangents(mesh, data, name, corners, poll):
 
 
 def _tangents_layer(mesh, name):
-    uv_map = name_in_blender(name[len(_TANGENT) :])
+    uv_map = name_in_blender(name[len(TANGENT) :])
     return mesh.uv_layers.get(uv_map) if uv_map else render_uv_map(mesh)
 
 
 def _is_spherical(mesh, name):
     """Whether a spherical map replaces the UV map: the name is empty, and the mesh has no UV map."""
-    return name == _TANGENT and len(mesh.uv_layers) == 0
+    return name == TANGENT and len(mesh.uv_layers) == 0
 
 
 def _spherical(places):
@@ -144,7 +144,7 @@ def attribute_sources(mesh, wanted):
     for name in sorted(wanted - {POLYGONS}):
         if name == "generated":
             yield _generated(mesh).values
-        elif name.startswith(_TANGENT):
+        elif name.startswith(TANGENT):
             layer = _tangents_layer(mesh, name)
             if layer is not None:
                 yield read_uv_map(layer)

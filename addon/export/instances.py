@@ -61,8 +61,11 @@ class Instances:
     There may be millions of entries: only numbers are stored for each, and all matrices are read in one call.
     """
 
-    def __init__(self, depsgraph, materials, messages, shaders, kept=None, parts=None, space=None):
-        """shaders: the ShaderCache of lamps. space: a SpaceView3D, whose local view and filters exclude objects."""
+    def __init__(self, depsgraph, materials, messages, shaders, divider, kept=None, parts=None, space=None):
+        """shaders: the ShaderCache of lamps. divider: a subdivision.Divider.
+
+        space: a SpaceView3D, whose local view and filters exclude objects.
+        """
         self.depsgraph = depsgraph
         self.messages = messages
         self.lights = []
@@ -70,7 +73,7 @@ class Instances:
         self._space = space
         self._shaders = shaders
         self._reader = AttributeReader(depsgraph, sees_all=False)
-        self._objects = Objects(depsgraph, materials, messages, kept, parts)
+        self._objects = Objects(depsgraph, materials, messages, divider, kept, parts)
         self._rows = {}
         self._narrowed = {}
         self._checked_hair = set()

@@ -10,6 +10,7 @@ from ..messages.severity import Severity
 from .attributes import POLYGONS
 from .mesh import export_mesh, read_positions, shown_mesh
 from .mesh_differences import differences, lost_by_exact_shape
+from .subdivision.divider import size_in_words
 from .unsupported import check_object
 from .visibility import object_hidden_from
 
@@ -36,9 +37,10 @@ class Look(NamedTuple):
 class Objects:
     """Reads each object once; meshes, looks and placements are lists indexed by their numbers."""
 
-    def __init__(self, depsgraph, materials, messages, kept=None, parts=None):
+    def __init__(self, depsgraph, materials, messages, divider, kept=None, parts=None):
         """kept: the Kept of earlier frames; parts: the Parts of earlier exports for a window."""
         self._parts = parts
+        self._divider = divider
         self._export_mesh = export_mesh if kept is None else kept.meshes(export_mesh)
         self.scene = depsgraph.scene
         self.view_layer = depsgraph.view_layer
@@ -151,12 +153,24 @@ class Objects:
         return number, used
 
     def _read_mesh(self, thing, owner, name, data_key, wanted, poll):
+        settings = self._divider.settings(thing, owner)
+        if settings is not None:
+            return self._divided_mesh(thing, owner, name, (data_key, self._divider.key(settings)), settings, wanted, poll)
+
         def read():
             original = thing.original.data
             with shown_mesh(thing, owner) as mesh:
                 return self._export_mesh(mesh, name if original is None else original.name, poll, wanted)
 
         return read() if self._parts is None else self._parts.mesh(thing, owner, data_key, wanted, read)
+
+    def _divided_mesh(self, thing, owner, name, data_key, settings, wanted, poll):
+        def read():
+            return self._divider.mesh(owner, settings, name, wanted, poll)
+
+        mesh = read() if self._parts is None else self._parts.mesh(thing, owner, data_key, wanted, read)
+        self.messages.add(f"object '{name}': {size_in_words(mesh)}", severity=Severity.HINT)
+        return mesh
 
     def _placement(self, thing, owner, name, kind, data_key):
         """Return the number of the transform from the unit shape to the mesh's bounds; -1 if the mesh has no vertices."""

@@ -13,6 +13,7 @@ from .instances import Instances
 from .materials import Materials
 from .settings import export_settings, world_of
 from .shader_cache import ShaderCache
+from .subdivision.divider import Divider
 from .unsupported import check_passes, check_scene, check_view_layer
 from .world import export_world
 
@@ -64,7 +65,8 @@ def export_scene(depsgraph, options=None, poll=None):
     images.frame, images.is_preview = scene.frame_current, options.is_preview
     shaders = ShaderCache(images) if parts is None else parts.shaders
     materials = Materials(messages, override, images, depsgraph, shaders)
-    instances = Instances(depsgraph, materials, messages, shaders, options.kept, parts, options.space)
+    divider = Divider(depsgraph, camera if options.view is None else None)
+    instances = Instances(depsgraph, materials, messages, shaders, divider, options.kept, parts, options.space)
     instances.collect(obey)
 
     def read_sky(messages, images, value):

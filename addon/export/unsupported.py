@@ -120,25 +120,6 @@ def check_object(thing, scene, messages):
             f"{who}: shadow caustics are not supported, only the caustics that paths find are shown",
             "feature:shadow caustics",
         )
-    if thing.modifiers:
-        _check_subdivision(thing, scene, f"object '{thing.name}'", messages)
-
-
-def _check_subdivision(thing, scene, who, messages):
-    """Add a message if Cycles subdivides adaptively by camera distance; the depsgraph's mesh uses the modifier's levels."""
-    last = thing.modifiers[-1]
-    if last.type != "SUBSURF" or not last.show_render:
-        return
-    adaptive = getattr(last, "use_adaptive_subdivision", None)
-    if adaptive is None:
-        # Before 5.0 adaptive subdivision is an experimental feature of the Cycles add-on, which may be disabled.
-        experiments = getattr(getattr(scene, "cycles", None), "feature_set", "") == "EXPERIMENTAL"
-        adaptive = experiments and thing.cycles.use_adaptive_subdivision
-    if adaptive:
-        messages.add(
-            f"{who}: adaptive subdivision is not supported, '{last.name}' divides by its {last.render_levels} levels",
-            "feature:adaptive subdivision",
-        )
 
 
 def check_hair(thing, messages):

@@ -1,0 +1,79 @@
+"""Blender's meshes as cages of subdivision: faces, creases, and how UV maps are joined at vertices."""
+
+import numpy as np
+
+from ..arrays import built_in, corner_vertices, read
+from ..edges import edge_ends
+from .catmull_clark import ENDLESS, Cage, Edges
+
+# Which corners of a UV map stay sharp, by the modifier's choice; LINEAR maps are not smoothed at all.
+_SHARP_CORNERS = {"PRESERVE_CORNERS", "PRESERVE_CORNERS_AND_JUNCTIONS", "PRESERVE_CORNERS_JUNCTIONS_AND_CONCAVE"}
+_SHARP_JUNCTIONS = _SHARP_CORNERS - {"PRESERVE_CORNERS"}
+
+
+def read_cage(mesh, positions, adaptive):
+    """Return the Cage of a mesh. positions: (vertices, 3)."""
+    starts = np.append(read(mesh.polygons, "loop_start", np.int32, 1), len(mesh.loops)).astype(np.int64)
+    corners = corner_vertices(mesh).astype(np.int64)
+    creases, sharpness, vertices = np.zeros((0, 2), np.int64), np.zeros(0), np.zeros(len(positions))
+    if adaptive.creased:
+        of_edges = _creases(mesh, "crease_edge", "EDGE", mesh.edges, "crease", len(mesh.edges))
+        sharp = np.flatnonzero(of_edges > 0.0)
+        creases, sharpness = edge_ends(mesh)[sharp].astype(np.int64), ENDLESS * of_edges[sharp]
+        layers = getattr(mesh, "vertex_creases", None)
+        layer = layers[0].data if layers else ()
+        vertices = ENDLESS * _creases(mesh, "crease_vert", "POINT", layer, "value", len(positions))
+    cage = Cage(positions.astype(float), corners, starts, creases, sharpness, vertices)
+    return _with_sharp_vertices(cage, adaptive)
+
+
+def _creases(mesh, name, domain, old, field, count):
+    """Return the creases of edges or vertices, 0 to 1. old: where Blender before 4.0 keeps them."""
+    data = built_in(mesh, name, domain)
+    if data is not None:
+        return read(data, "value", np.float32, 1).astype(float)
+    if len(old) and field in old[0].bl_rna.properties:
+        return read(old, field, np.float32, 1).astype(float)
+    return np.zeros(count)
+
+
+def _with_sharp_vertices(cage, adaptive):
+    """Return the cage with vertices of two edges as sharp as both, and with sharp corners of boundaries where wanted."""
+    edges = Edges(cage, cage.neighbours()[0])
+    count = len(cage.values)
+    ends = edges.ends.reshape(-1)
+    two = np.bincount(ends, minlength=count) == 2
+    both = np.full(count, np.inf)
+    known = np.where(edges.faces == 2, edges.sharpness, 0.0)
+    np.minimum.at(both, ends, np.repeat(known, 2))
+    sharpness = np.where(two, np.minimum(cage.vertex_sharpness + both, ENDLESS), cage.vertex_sharpness)
+    if adaptive.sharp_corners:
+        sharpness[np.bincount(cage.corners, minlength=count) == 1] = np.inf
+    sharpness[sharpness >= ENDLESS] = np.inf
+    return Cage(cage.values, cage.corners, cage.starts, cage.creases, cage.crease_sharpness, sharpness)
+
+
+def uv_cage(cage, uvs, rule):
+    """Return the cage of a UV map, whose vertices are split where it has a seam. uvs: (corners, 2); rule: its uv_smooth."""
+    keys = np.empty((len(uvs), 3))
+    keys[:, 0], keys[:, 1:] = cage.corners, uvs
+    # Equal rows have equal numbers; adding 0 turns -0 into 0.
+    found, first, corners = np.unique(keys + 0.0, axis=0, return_index=True, return_inverse=True)
+    corners = corners.reshape(-1)
+    vertex = cage.corners[first]
+    after = cage.neighbours()[0]
+    edges = Edges(cage, after)
+    sharp = np.flatnonzero(edges.sharpness[edges.of_corner] > 0.0)
+    creases = np.stack([corners[sharp], corners[after[sharp]]], axis=1)
+    split = Cage(
+        found[:, 1:], corners, cage.starts, creases, edges.sharpness[edges.of_corner[sharp]], cage.vertex_sharpness[vertex]
+    )
+    sharpness = split.vertex_sharpness.copy()
+    if rule == "PRESERVE_BOUNDARIES":
+        own = Edges(split, after)
+        sharpness[own.ends[own.faces != 2].reshape(-1)] = np.inf
+    if rule in _SHARP_CORNERS:
+        sharpness[np.bincount(corners, minlength=len(found)) == 1] = np.inf
+    if rule in _SHARP_JUNCTIONS:
+        sharpness[np.bincount(vertex, minlength=len(cage.values))[vertex] > 2] = np.inf
+    return Cage(split.values, corners, cage.starts, creases, split.crease_sharpness, sharpness)

@@ -1,0 +1,170 @@
+"""Triangles of the pieces of patches: a regular grid inside, stitched to the vertices of the edges around."""
+
+import functools
+from dataclasses import dataclass
+
+import numpy as np
+
+_SQUARE = np.array(((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)))
+_TRIANGLE = _SQUARE[[0, 1, 3]]
+
+
+@dataclass(frozen=True)
+class Tessellation:
+    """Triangles between points of patches. Each vertex has a point for each piece that shares it."""
+
+    patches: np.ndarray  # (points,)
+    uvs: np.ndarray  # (points, 2)
+    vertices: np.ndarray  # the vertex of each point
+    owners: np.ndarray  # a point of each vertex
+    triangles: np.ndarray  # (triangles, 3), points
+
+
+def tessellate(table, quads, triangles, poll):
+    """Return the Tessellation of the Pieces of split_patches()."""
+    patches, uvs, vertices, faces = [], [], [], []
+    count = 0
+    for pieces in (quads, triangles):
+        segments = table.segments[pieces.edges]
+        kinds, which = np.unique(segments, axis=0, return_inverse=True)
+        order = np.argsort(which.reshape(-1), kind="stable")
+        starts = np.searchsorted(which.reshape(-1)[order], np.arange(len(kinds) + 1))
+        for kind, first, last in zip(kinds.tolist(), starts, starts[1:], strict=False):
+            poll()
+            group = pieces.take(order[first:last])
+            places, pattern = _pattern(tuple(kind))
+            own = _vertices(table, group, len(places))
+            points = len(own) * len(places)
+            patches.append(np.repeat(group.patches, len(places)))
+            uvs.append((_shape(places, len(kind)) @ group.uvs).reshape(-1, 2))
+            vertices.append(own.reshape(-1))
+            offsets = count + len(places) * np.arange(len(own))
+            faces.append((offsets[:, None, None] + pattern).reshape(-1, 3))
+            count += points
+    joined = [np.concatenate(part) if part else np.zeros((0, 3), np.int64) for part in (vertices, faces)]
+    numbers = joined[0].reshape(-1)
+    owners = np.full(table.vertices, -1)
+    owners[numbers[::-1]] = np.arange(count)[::-1]
+    used = owners >= 0
+    renumbered = np.cumsum(used) - 1
+    return Tessellation(
+        patches=np.concatenate(patches) if patches else np.zeros(0, np.int64),
+        uvs=np.clip(np.concatenate(uvs), 0.0, 1.0) if uvs else np.zeros((0, 2)),
+        vertices=renumbered[numbers],
+        owners=owners[used],
+        triangles=joined[1],
+    )
+
+
+def _shape(places, sides):
+    """Return (places, sides), the weights of the corners at places of the unit square or triangle."""
+    u, v = places.T
+    if sides == 3:
+        return np.stack([1.0 - u - v, u, v], axis=1)
+    return np.stack([(1.0 - u) * (1.0 - v), u * (1.0 - v), u * v, (1.0 - u) * v], axis=1)
+
+
+def _vertices(table, pieces, places):
+    """Return (pieces, places), the vertices on the edges and new ones for the places inside."""
+    columns = []
+    for side in range(pieces.edges.shape[1]):
+        numbers, reverse = pieces.edges[:, side], pieces.reverse[:, side]
+        ends, inner, segments = table.ends[numbers], table.inner[numbers], table.segments[numbers]
+        columns.append(np.where(reverse, ends[:, 1], ends[:, 0]))
+        for step in range(1, int(segments[0])):
+            columns.append(inner + np.where(reverse, segments - step, step) - 1)
+    inside = places - len(columns)
+    first = table.vertices
+    table.vertices += inside * len(pieces.patches)
+    new = first + np.arange(inside * len(pieces.patches)).reshape(len(pieces.patches), inside)
+    return np.concatenate([np.stack(columns, axis=1), new], axis=1)
+
+
+@functools.lru_cache(maxsize=None)
+def _pattern(segments):
+    """Return the places, (n, 2), of vertices along the edges and inside, and triangles between them."""
+    corners = _SQUARE if len(segments) == 4 else _TRIANGLE
+    places, edges = [], []
+    for side, count in enumerate(segments):
+        start, end = corners[side], corners[(side + 1) % len(segments)]
+        edges.append(list(range(len(places), len(places) + count + 1)))
+        places += [start + (end - start) * (step / count) for step in range(count)]
+    edges[-1][-1] = 0
+    found = _square(segments, edges, places) if len(segments) == 4 else _triangle(segments, edges, places)
+    return np.array(places), np.array(found, np.int64)
+
+
+def _square(segments, edges, places):
+    across, up = (max(segments[side], segments[side + 2]) for side in (0, 1))
+    if up == 1:
+        return _between(edges[2][::-1], edges[0], places)
+    if across == 1:
+        return _between(edges[3][::-1], edges[1], places)
+    first = len(places)
+    places += [np.array((i / across, j / up)) for j in range(1, up) for i in range(1, across)]
+    grid = first + np.arange((across - 1) * (up - 1)).reshape(up - 1, across - 1)
+    found = []
+    for j in range(up - 2):
+        for i in range(across - 2):
+            a, b, c, d = grid[j, i], grid[j, i + 1], grid[j + 1, i + 1], grid[j + 1, i]
+            found += [(a, b, c), (a, c, d)]
+    sides = (grid[0], grid[:, -1], grid[-1, ::-1], grid[::-1, 0])
+    for inner, outer in zip(sides, edges, strict=True):
+        found += _between(inner.tolist(), outer, places)
+    return found
+
+
+def _triangle(segments, edges, places):
+    most = max(segments)
+    corners = [edge[0] for edge in edges]
+    if most == 1:
+        return [tuple(corners)]
+    if most == 2:
+        return _of_halves(segments, edges, corners)
+    step, rows, first = 1.0 / (most + 1), most - 1, len(places)
+    grid = [[first + row * (row + 1) // 2 + column for column in range(row + 1)] for row in range(rows)]
+    places += [step * np.array((1 + column, 1 + row - column)) for row in range(rows) for column in range(row + 1)]
+    found = []
+    for row in range(rows - 1):
+        for column in range(row + 1):
+            a, b, c = grid[row][column], grid[row + 1][column + 1], grid[row + 1][column]
+            found.append((a, b, c))
+            if column < row:
+                found.append((a, grid[row][column + 1], b))
+    sides = ([row[-1] for row in grid], grid[-1][::-1], [row[0] for row in grid[::-1]])
+    for inner, outer in zip(sides, edges, strict=True):
+        found += _between(inner, outer, places)
+    return found
+
+
+def _of_halves(segments, edges, corners):
+    """Of a triangle whose edges have one segment or two."""
+    halved = [side for side in range(3) if segments[side] == 2]
+    if len(halved) == 3:
+        a, b, c = (edge[1] for edge in edges)
+        return [(corners[0], a, c), (corners[1], b, a), (corners[2], c, b), (a, b, c)]
+    # Of two halved edges, begin with the one that the other follows.
+    side = 2 if halved == [0, 2] else halved[0]
+    start, end, apex = (corners[(side + step) % 3] for step in range(3))
+    middle = edges[side][1]
+    if len(halved) == 1:
+        return [(start, middle, apex), (middle, end, apex)]
+    other = edges[(side + 1) % 3][1]
+    return [(start, middle, apex), (middle, end, other), (middle, other, apex)]
+
+
+def _between(left, right, places):
+    """Return triangles between two rows of vertices, along the shorter diagonals."""
+    found, i, j = [], 0, 0
+    while i < len(left) - 1 or j < len(right) - 1:
+        if j == len(right) - 1:
+            step_left = True
+        elif i == len(left) - 1:
+            step_left = False
+        else:
+            to_right = places[left[i]] - places[right[j + 1]]
+            to_left = places[right[j]] - places[left[i + 1]]
+            step_left = not to_right @ to_right < to_left @ to_left
+        found.append((left[i], right[j], left[i + 1] if step_left else right[j + 1]))
+        i, j = (i + 1, j) if step_left else (i, j + 1)
+    return found
