@@ -1,11 +1,14 @@
 """Blender's meshes as cages of subdivision: faces, creases, and how UV maps are joined at vertices."""
 
+import bpy
 import numpy as np
 
 from ..arrays import built_in, corner_vertices, read
 from ..edges import edge_ends
 from .catmull_clark import ENDLESS, Cage, Edges
 
+# Since 4.5 Cycles refines the cage three times; what is sharper than that counts as smooth from there, but for full creases.
+_MOST_SHARP = 3.0 if bpy.app.version >= (4, 5) else ENDLESS
 # Which corners of a UV map stay sharp, by the modifier's choice; LINEAR maps are not smoothed at all.
 _SHARP_CORNERS = {"PRESERVE_CORNERS", "PRESERVE_CORNERS_AND_JUNCTIONS", "PRESERVE_CORNERS_JUNCTIONS_AND_CONCAVE"}
 _SHARP_JUNCTIONS = _SHARP_CORNERS - {"PRESERVE_CORNERS"}
@@ -20,8 +23,8 @@ def read_cage(mesh, positions, adaptive):
         of_edges = _creases(mesh, "crease_edge", "EDGE", mesh.edges, "crease", len(mesh.edges))
         sharp = np.flatnonzero(of_edges > 0.0)
         creases, sharpness = edge_ends(mesh)[sharp].astype(np.int64), ENDLESS * of_edges[sharp]
-        layers = getattr(mesh, "vertex_creases", None)
-        layer = layers[0].data if layers else ()
+        # Before 4.0 the creases of vertices are layers of their own.
+        layer = mesh.vertex_creases[0].data if bpy.app.version < (4, 0) and mesh.vertex_creases else ()
         vertices = ENDLESS * _creases(mesh, "crease_vert", "POINT", layer, "value", len(positions))
     cage = Cage(positions.astype(float), corners, starts, creases, sharpness, vertices)
     return _with_sharp_vertices(cage, adaptive)
@@ -49,8 +52,11 @@ def _with_sharp_vertices(cage, adaptive):
     sharpness = np.where(two, np.minimum(cage.vertex_sharpness + both, ENDLESS), cage.vertex_sharpness)
     if adaptive.sharp_corners:
         sharpness[np.bincount(cage.corners, minlength=count) == 1] = np.inf
-    sharpness[sharpness >= ENDLESS] = np.inf
-    return Cage(cage.values, cage.corners, cage.starts, cage.creases, cage.crease_sharpness, sharpness)
+    return Cage(cage.values, cage.corners, cage.starts, cage.creases, _limited(cage.crease_sharpness), _limited(sharpness))
+
+
+def _limited(sharpness):
+    return np.where(sharpness >= ENDLESS, np.inf, np.minimum(sharpness, _MOST_SHARP))
 
 
 def uv_cage(cage, uvs, rule):

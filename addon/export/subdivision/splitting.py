@@ -157,7 +157,7 @@ class EdgeTable:
 
 
 def split_patches(surface, cage, rate, most_triangles, poll):
-    """Return (EdgeTable, quads, triangles), the Pieces of all patches of a cage; raise TooManyTrianglesError beyond the most."""
+    """Return (EdgeTable, quads, triangles), the Pieces of a cage's patches; raise TooManyTrianglesError beyond the most."""
     return _Splitter(surface, cage, rate, most_triangles, poll).run()
 
 
@@ -201,7 +201,10 @@ class _Splitter:
         table.add(ends, here, inward, np.zeros(len(here), np.int64))
         square = np.broadcast_to(np.array(((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))), (len(here), 4, 2))
         reverse = np.broadcast_to(np.array((False, False, True, True)), (len(here), 4))
-        return Pieces(here, square, np.stack([ahead, 2 * count + here, 2 * count + before, behind], axis=1), reverse)
+        pieces = Pieces(here, square, np.stack([ahead, 2 * count + here, 2 * count + before, behind], axis=1), reverse)
+        # The four pieces of a quad have the quad's own directions, on which the diagonals of their grids depend.
+        corner = here - cage.starts[faces]
+        return pieces.turned(np.where(np.diff(cage.starts)[faces] == 4, -corner, 0))
 
     def _keep(self, pieces):
         self._done[pieces.edges.shape[1]].append(pieces)
@@ -217,9 +220,11 @@ class _Splitter:
         along = np.where(ways.all(axis=1), along, np.where(ways[:, 0], 0, 1))
         split = ways.any(axis=1)
         self._keep(quads.take(~split))
-        quads, along, t = quads.take(split).turned(along[split]), along[split], t[split]
+        along, t = along[split], t[split]
+        quads = quads.take(split).turned(along)
         single = np.take_along_axis(np.minimum(t[:, :2], np.where(t[:, 2:] == 1, 1, t[:, :2])), along[:, None], 1)[:, 0] == 1
-        return self._across(quads.take(~single)), self._along_diagonal(quads.take(single))
+        halves = self._across(quads.take(~single)).turned(np.tile(-along[~single], 2))
+        return halves, self._along_diagonal(quads.take(single))
 
     def _across(self, quads):
         """Split quads from the middle of edge 0 to the middle of edge 2."""

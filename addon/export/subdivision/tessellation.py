@@ -43,12 +43,15 @@ def tessellate(table, quads, triangles, poll):
             count += points
     joined = [np.concatenate(part) if part else np.zeros((0, 3), np.int64) for part in (vertices, faces)]
     numbers = joined[0].reshape(-1)
+    patches = np.concatenate(patches) if patches else np.zeros(0, np.int64)
+    # As in Cycles, the first face with a vertex decides its normal, which faces beside a crease do not share.
+    order = np.argsort(patches, kind="stable")[::-1]
     owners = np.full(table.vertices, -1)
-    owners[numbers[::-1]] = np.arange(count)[::-1]
+    owners[numbers[order]] = order
     used = owners >= 0
     renumbered = np.cumsum(used) - 1
     return Tessellation(
-        patches=np.concatenate(patches) if patches else np.zeros(0, np.int64),
+        patches=patches,
         uvs=np.clip(np.concatenate(uvs), 0.0, 1.0) if uvs else np.zeros((0, 2)),
         vertices=renumbered[numbers],
         owners=owners[used],
@@ -80,7 +83,7 @@ def _vertices(table, pieces, places):
     return np.concatenate([np.stack(columns, axis=1), new], axis=1)
 
 
-@functools.lru_cache(maxsize=None)
+@functools.cache
 def _pattern(segments):
     """Return the places, (n, 2), of vertices along the edges and inside, and triangles between them."""
     corners = _SQUARE if len(segments) == 4 else _TRIANGLE
