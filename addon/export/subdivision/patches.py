@@ -10,9 +10,12 @@ import numpy as np
 from .catmull_clark import Edges, Joints, refine, sums
 
 # The refinements beyond which no cage is refined, and the number of quads that one may have for the sake of accuracy.
-_MOST_LEVELS = 6
-_MOST_QUADS = 1 << 17
+_MOST_LEVELS = 5
+_MOST_QUADS = 1 << 16
 _AT_ONCE = 1 << 16
+# The sine of the angle between u and v below which they tell no normal, and the step to a place where they do.
+_LEAST_SINE = 1e-6
+_BESIDE = 1e-3
 # The child of a quad that holds a point, by the halves of v and u.
 _CHILDREN = np.array(((0, 1), (3, 2)))
 
@@ -40,12 +43,7 @@ class LimitPatches:
 
     def normals(self, patches, uvs, poll):
         """Return the normals of length 1 at the points; along z where the surface has none, as in Cycles."""
-
-        def normals(points, u, v):
-            along_u, along_v = _sum(points, _weights(v), _slopes(u)), _sum(points, _slopes(v), _weights(u))
-            return unit(np.cross(along_u, along_v))
-
-        return self._evaluate(patches, uvs, poll, normals)
+        return self._evaluate(patches, uvs, poll, _normals)
 
     def _evaluate(self, patches, uvs, poll, function):
         result = np.empty((len(patches), self._points.shape[2]))
@@ -104,6 +102,19 @@ def _weights(t):
 def _slopes(t):
     s = 1.0 - t
     return 3.0 * np.stack([-s * s, s * s - 2.0 * s * t, 2.0 * s * t - t * t, t * t], axis=1)
+
+
+def _normals(points, u, v):
+    along_u, along_v = _sum(points, _weights(v), _slopes(u)), _sum(points, _slopes(v), _weights(u))
+    across = np.cross(along_u, along_v)
+    areas = np.linalg.norm(along_u, axis=1) * np.linalg.norm(along_v, axis=1)
+    flat = np.linalg.norm(across, axis=1) <= _LEAST_SINE * areas
+    if flat.any():
+        # At a round corner of a boundary both directions are the boundary's: take the normal beside.
+        u, v = (t[flat] + _BESIDE * (0.5 - t[flat]) for t in (u, v))
+        points = points[flat]
+        across[flat] = np.cross(_sum(points, _weights(v), _slopes(u)), _sum(points, _slopes(v), _weights(u)))
+    return unit(across)
 
 
 def _sum(points, rows, columns):

@@ -222,7 +222,7 @@ class _Splitter:
         self._keep(quads.take(~split))
         along, t = along[split], t[split]
         quads = quads.take(split).turned(along)
-        single = np.take_along_axis(np.minimum(t[:, :2], np.where(t[:, 2:] == 1, 1, t[:, :2])), along[:, None], 1)[:, 0] == 1
+        single = np.take_along_axis((t[:, :2] == 1) | (t[:, 2:] == 1), along[:, None], axis=1)[:, 0]
         halves = self._across(quads.take(~single)).turned(np.tile(-along[~single], 2))
         return halves, self._along_diagonal(quads.take(single))
 
