@@ -245,7 +245,7 @@ _SHARES = {
     "lights": "lights_*",
     "materials": "materials_*,textures_*",
     "nodes": "inputs,inputs_objects,inputs_instances,inputs_places,zones,zones_bundles,left_out,settings_of_nodes,looking",
-    "others": "objects,cameras,passes_*,worlds,skies,films",
+    "others": "objects,subdivisions,cameras,passes_*,worlds,skies,films",
 }
 
 

@@ -43,6 +43,7 @@ SUBJECTS = (
     "skies",
     "cameras",
     "objects",
+    "subdivisions",
     "films",
     "passes_light",
     "passes_data",

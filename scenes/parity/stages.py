@@ -76,6 +76,12 @@ def card(scene, material, size=3.0):
     return thing
 
 
+def displace(surface, method):
+    """Sets the method by which a material is displaced: BUMP, DISPLACEMENT or BOTH."""
+    owner = surface if "displacement_method" in surface.bl_rna.properties else surface.cycles
+    owner.displacement_method = method
+
+
 def add_uv(mesh, scale=1.0):
     """Adds a UV map from the mesh's extent in x and y to the unit square, repeated `scale` times."""
     layer = mesh.uv_layers.active or mesh.uv_layers.new(name="UVMap")

@@ -10,7 +10,7 @@ from .. import parts
 from . import images
 from .catalogue import case, variants
 from .nodes import material, shader
-from .stages import add_uv, ball, camera, card, floor, lamp, sky, studio
+from .stages import add_uv, ball, camera, card, displace, floor, lamp, sky, studio
 
 
 def _waves(space):
@@ -150,11 +150,6 @@ def bump_scaled_object(scene):
     thing.scale = (1.0, 1.0, 0.4)
 
 
-def _displace(surface, method):
-    owner = surface if "displacement_method" in surface.bl_rna.properties else surface.cycles
-    owner.displacement_method = method
-
-
 @variants(values={"true": "DISPLACEMENT", "both": "BOTH", "bump": "BUMP"})
 def displacement(scene, method):
     """Hills that the mesh can follow, with ripples finer than its faces, which need bump."""
@@ -165,7 +160,7 @@ def displacement(scene, method):
         return nodes.add("ShaderNodeBsdfDiffuse", Color=(0.8, 0.7, 0.6)), height
 
     surface = material(build)
-    _displace(surface, method)
+    displace(surface, method)
     mesh = _grid(24, 3.0)
     parts.place(scene, "Grid", mesh, surface, rotation=(0.15, 0.1, 0.3))
     lamp(scene)
@@ -195,7 +190,7 @@ def vector_displacement(scene, given):
         return nodes.add("ShaderNodeBsdfDiffuse", Color=(0.8, 0.7, 0.6)), offset
 
     surface = material(build)
-    _displace(surface, method)
+    displace(surface, method)
     parts.place(scene, "Grid", _grid(24, 3.0), surface, rotation=(0.15, 0.1, 0.3), scale=(1.0, 0.8, 1.2))
     lamp(scene)
     sky(scene)

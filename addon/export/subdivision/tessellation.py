@@ -50,12 +50,14 @@ def tessellate(table, quads, triangles, poll):
     owners[numbers[order]] = order
     used = owners >= 0
     renumbered = np.cumsum(used) - 1
+    # The first triangle with a vertex decides by which side of a seam it is displaced: keep the order of faces.
+    triangles = joined[1][np.argsort(patches[joined[1][:, 0]], kind="stable")]
     return Tessellation(
         patches=patches,
         uvs=np.clip(np.concatenate(uvs), 0.0, 1.0) if uvs else np.zeros((0, 2)),
         vertices=renumbered[numbers],
         owners=owners[used],
-        triangles=joined[1],
+        triangles=triangles,
     )
 
 
