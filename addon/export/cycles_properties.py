@@ -41,7 +41,7 @@ def _none(reason, *names):
 
 _VOLUMES = "acts on volumes alone, which are reported"
 _MOTION = "acts with motion blur alone, which is reported"
-_SUBDIVISION = "acts with adaptive subdivision alone, which is reported"
+_SUBDIVISION = "divides meshes adaptively"
 _CAUSTICS = "acts with a receiver of shadow caustics alone, which is reported"
 
 _SCENE = {
@@ -85,8 +85,9 @@ _SCENE = {
     **_none("changes noise and time; flattened area lamps shine by it as in Cycles", "use_light_tree"),
     **_none("Blender's releases ignore it, builds for developers of Cycles alone read it", "direct_light_sampling_type"),
     **_none(_VOLUMES, "volume_bounces", "volume_step_rate", "volume_preview_step_rate", "volume_max_steps", "volume_biased"),
-    **_none(_SUBDIVISION, "feature_set", "dicing_rate", "preview_dicing_rate", "max_subdivisions", "dicing_camera"),
-    **_none(_SUBDIVISION, "offscreen_dicing_scale"),
+    **_followed(_SUBDIVISION, "dicing_rate", "max_subdivisions", "dicing_camera", "offscreen_dicing_scale"),
+    **_followed(_SUBDIVISION, "feature_set", before=(5, 0)),
+    **_none("divides meshes in views alone", "preview_dicing_rate"),
     **_none(_MOTION, "motion_blur_position", "rolling_shutter_type", "rolling_shutter_duration"),
     **_none("acts on Script nodes alone, which are reported", "shading_system"),
     **_none("acts on baking alone", "bake_type"),
@@ -119,10 +120,9 @@ _OBJECT = {
     **_followed("moves the end of light on coarse meshes", "shadow_terminator_geometry_offset", before=(4, 5)),
     **_told("Lancer has the geometry offset alone", "shadow_terminator_offset", before=(4, 5)),
     **_told("Lancer leaves nothing out", "use_camera_cull", "use_distance_cull"),
-    **_told("Lancer divides by the modifier's levels", "use_adaptive_subdivision"),
+    **_followed(_SUBDIVISION, "use_adaptive_subdivision", "dicing_rate", before=(5, 0)),
     **_told("Lancer has the caustics that paths find", "is_caustics_receiver"),
     **_none(_CAUSTICS, "is_caustics_caster"),
-    **_none(_SUBDIVISION, "dicing_rate"),
     **_none(_MOTION, "use_motion_blur", "use_deform_motion", "motion_steps"),
     **_none("acts with Fast GI alone, which is reported", "ao_distance"),
 }

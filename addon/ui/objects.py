@@ -42,6 +42,38 @@ class LANCER_OBJECT_PT_shadow_terminator(LancerObjectPanel, bpy.types.Panel):
         setting(column, "shadow_terminator_geometry_offset", thing, getattr(thing, "cycles", None), text="Geometry Offset")
 
 
+class LANCER_OBJECT_PT_subdivision(LancerObjectPanel, bpy.types.Panel):
+    """Settings that Blender's own panel of the modifier shows for Cycles alone."""
+
+    bl_label = "Adaptive Subdivision"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and cls._owner(context.object) is not None
+
+    @staticmethod
+    def _owner(thing):
+        """Return what has the settings, the last modifier, or before 5.0 Cycles' settings of the object; else None."""
+        last = thing.modifiers[-1] if thing.modifiers else None
+        if last is None or last.type != "SUBSURF":
+            return None
+        return last if hasattr(last, "use_adaptive_subdivision") else getattr(thing, "cycles", None)
+
+    def draw_header(self, context):
+        self.layout.prop(self._owner(context.object), "use_adaptive_subdivision", text="")
+
+    def draw(self, context):
+        owner = self._owner(context.object)
+        column = self._column()
+        if hasattr(owner, "adaptive_space"):
+            column.prop(owner, "adaptive_space")
+            in_pixels = owner.adaptive_space == "PIXEL"
+            column.prop(owner, "adaptive_pixel_size" if in_pixels else "adaptive_object_edge_length")
+        else:
+            column.prop(owner, "dicing_rate")
+
+
 class LANCER_OBJECT_PT_ray_visibility(LancerPanel, bpy.types.Panel):
     bl_label = "Ray Visibility"
     bl_context = "object"
@@ -67,5 +99,6 @@ class LANCER_OBJECT_PT_ray_visibility(LancerPanel, bpy.types.Panel):
 CLASSES = (
     LANCER_OBJECT_PT_shading,
     LANCER_OBJECT_PT_shadow_terminator,
+    LANCER_OBJECT_PT_subdivision,
     LANCER_OBJECT_PT_ray_visibility,
 )

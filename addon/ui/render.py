@@ -247,6 +247,28 @@ class LANCER_RENDER_PT_simplify_strokes(LancerRenderPanel, GreasePencilSimplifyP
     bl_options = {"DEFAULT_CLOSED"}
 
 
+class LANCER_RENDER_PT_subdivision(LancerRenderPanel, bpy.types.Panel):
+    """Settings of Cycles, which Lancer follows."""
+
+    bl_label = "Subdivision"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and hasattr(context.scene, "cycles")
+
+    def draw(self, context):
+        cycles = context.scene.cycles
+        column = self._column()
+        if bpy.app.version < (5, 0):
+            column.prop(cycles, "feature_set")
+        column.prop(cycles, "dicing_rate", text="Dicing Rate Render")
+        column.prop(cycles, "preview_dicing_rate", text="Viewport")
+        column.prop(cycles, "offscreen_dicing_scale", text="Offscreen Scale")
+        column.prop(cycles, "max_subdivisions")
+        column.prop(cycles, "dicing_camera")
+
+
 class LANCER_RENDER_PT_film(LancerRenderPanel, bpy.types.Panel):
     bl_label = "Film"
     bl_options = {"DEFAULT_CLOSED"}
@@ -347,6 +369,7 @@ CLASSES = (
     LANCER_RENDER_PT_simplify_viewport,
     LANCER_RENDER_PT_simplify_render,
     LANCER_RENDER_PT_simplify_strokes,
+    LANCER_RENDER_PT_subdivision,
     LANCER_RENDER_PT_film,
     LANCER_RENDER_PT_pixel_filter,
     LANCER_RENDER_PT_transparent,

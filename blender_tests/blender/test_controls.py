@@ -34,7 +34,7 @@ OF_OTHERS = {
     "denoiser": "of the library that denoises",
     "exposure": "of lamps; of the display in Blenders whose lamps have none",
     "extend": "a list's method; of curves' display",
-    "feature_set": "told with adaptive subdivision alone",
+    "feature_set": "without effect since 5.0",
     "fps": "of the Scene Time node",
     "fps_base": "of the Scene Time node",
     "frame_current": "chosen in the timeline",
@@ -47,6 +47,7 @@ OF_OTHERS = {
     "instance_collection": "of instancers, of which nodes read attributes",
     "instance_type": "of instancers, of which nodes read attributes",
     "look": "of an object's table row; of the display",
+    "preview_dicing_rate": "divides meshes in views",
     "matrix": "of cameras and lamps in a snapshot",
     "matrix_world": "the result of location, rotation and scale",
     "metallic": "a socket of a shader node",
@@ -56,7 +57,7 @@ OF_OTHERS = {
     "title": "a string's method; of the display's safe areas",
     "texture_limit": "told as not supported, in views",
     "texture_resolution": "told as not supported, in views",
-    "use_adaptive_subdivision": "told as not supported, with a modifier",
+    "use_adaptive_subdivision": "of the modifier since 5.0",
     "use_light_tree": "acts on flattened area lamps alone",
     "use_clip": "of curves of nodes",
     "use_custom_distance": "told as not supported before 4.2",
@@ -65,7 +66,7 @@ OF_OTHERS = {
 }
 # The export, without its list of all of Cycles' settings, and the other files that read settings of passes.
 ADDON = pathlib.Path(ROOT, "addon")
-EXPORT = sorted({*ADDON.glob("export/*.py")} - {ADDON / "export" / "cycles_properties.py"})
+EXPORT = sorted({*ADDON.glob("export/**/*.py")} - {ADDON / "export" / "cycles_properties.py"})
 READERS = (*EXPORT, ADDON / "engine" / "passes.py", ADDON / "denoise" / "view_layer.py")
 
 

@@ -9,7 +9,7 @@ from .modifier import adaptive, cage_of
 
 class Divider:
     def __init__(self, depsgraph, camera):
-        """camera: the snapshot.Camera of the picture; None for a window, which is divided by the camera of the scene.
+        """camera: the snapshot.Camera of the picture; None for a window, whose meshes the scene's camera divides.
 
         The meshes of a window do not follow its view, as in Cycles: else each move of the view would divide them again.
         """

@@ -210,9 +210,21 @@ class _Stage:
         if hasattr(world, "cycles"):
             world.cycles.sampling_method = "MANUAL"
             yield now(world.cycles)
+        yield from self._of_subdivision(now)
         self.cube.lancer.shape = "SPHERE"
         yield now(self.cube.lancer)
         self.cube.lancer.shape = "MESH"
+
+    def _of_subdivision(self, now):
+        """A cube that its levels limit, and one that a camera beside the scene's divides by its pixels."""
+        cycles, modifier = self.scene.cycles, self.cube.modifiers[-1]
+        if hasattr(modifier, "use_adaptive_subdivision"):
+            modifier.use_adaptive_subdivision = True
+        else:
+            cycles.feature_set, self.cube.cycles.use_adaptive_subdivision = "EXPERIMENTAL", True
+        cycles.dicing_camera = stage.link("Beside", self.camera.data, (3.0, -6.0, 3.0))
+        for cycles.max_subdivisions in (1, 12):
+            yield now(cycles, self.cube.cycles)
 
     def _of_materials(self):
         material = self.material

@@ -124,18 +124,6 @@ def objects():
     cube.cycles.is_caustics_receiver = True
     result["caustics"] = told(cube)
     cube.cycles.is_caustics_receiver = False
-    modifier = cube.modifiers.new("Round", "SUBSURF")
+    cube.modifiers.new("Round", "SUBSURF")
     result["divided"] = told(cube)
-    if hasattr(modifier, "use_adaptive_subdivision"):
-        modifier.use_adaptive_subdivision = True
-    else:
-        cube.cycles.use_adaptive_subdivision = True
-        result["supported features"] = told(cube)
-        scene.cycles.feature_set = "EXPERIMENTAL"
-    result["adaptive"] = told(cube)
-    modifier.show_render = False
-    result["not rendered"] = told(cube)
-    modifier.show_render = True
-    cube.modifiers.new("Last", "SMOOTH")
-    result["not last"] = told(cube)
     return result

@@ -1,0 +1,112 @@
+"""Objects that Cycles divides adaptively, as they are exported, and what the export leaves behind."""
+
+import bpy
+import numpy as np
+import stage
+from export_cases import export_told
+
+from addon.export.subdivision import divided
+
+
+def _adaptive(scene, thing, rate, kind="CATMULL_CLARK"):
+    """Give an object a Subdivision modifier of one level that Cycles replaces."""
+    modifier = thing.modifiers.new("Round", "SUBSURF")
+    modifier.levels = modifier.render_levels = 1
+    modifier.subdivision_type = kind
+    if hasattr(modifier, "use_adaptive_subdivision"):
+        modifier.use_adaptive_subdivision, modifier.adaptive_pixel_size = True, rate
+    else:
+        scene.cycles.feature_set, thing.cycles.use_adaptive_subdivision, thing.cycles.dicing_rate = "EXPERIMENTAL", True, rate
+    return modifier
+
+
+def _exported():
+    snapshot, messages = export_told()
+    mesh = snapshot.meshes[0]
+    return {"triangles": len(mesh.triangles), "meshes": len(snapshot.meshes), "told": messages.lines()}
+
+
+def _kept():
+    """Return what an export must leave as it is."""
+    modifiers = [(m.name, m.show_render, m.show_viewport) for item in bpy.data.objects for m in item.modifiers]
+    return [len(bpy.data.meshes), len(bpy.data.objects), modifiers]
+
+
+def _quads(scene):
+    thing = stage.plane(2.0)
+    thing.modifiers.new("Row", "ARRAY").count = 2
+    return thing, _adaptive(scene, thing, 2.0, "SIMPLE")
+
+
+def objects():
+    """Return what the export makes of a row of two squares in several states."""
+    result = {"version": bpy.app.version[:2]}
+    scene = stage.empty(width=80, height=60)
+    stage.camera((0, 0, 5), (0, 0, 0), type="ORTHO", ortho_scale=8.0)
+    thing, modifier = _quads(scene)
+    before = _kept()
+    result["divided"] = _exported()
+    result["kept"] = _kept() == before
+    modifier.show_render = False
+    result["off"] = _exported()
+    modifier.show_render = True
+    last = thing.modifiers.new("Last", "SMOOTH")
+    result["not last"] = _exported()
+    thing.modifiers.remove(last)
+    scene.cycles.max_subdivisions = 1
+    result["levels"] = _exported()
+    scene.cycles.max_subdivisions = 12
+    scene.cycles.dicing_rate = 2.0
+    result["coarser"] = _exported()
+    copy = stage.link("Copy", None, (0, 2, 0))
+    group = bpy.data.collections.new("Group")
+    group.objects.link(thing)
+    copy.instance_type, copy.instance_collection = "COLLECTION", group
+    result["instances"] = _exported()
+    return result
+
+
+def layers():
+    """Return attributes of a divided square with flat and smooth faces, slots, colours and a UV map."""
+    scene = stage.empty(width=64, height=64)
+    stage.camera((0, 0, 5), (0, 0, 0), type="ORTHO", ortho_scale=4.0)
+    thing = stage.mesh(
+        "Two", [(-1, -1, 0), (0, -1, 0), (1, -1, 0), (1, 1, 0), (0, 1, 0), (-1, 1, 0)], [(0, 1, 4, 5), (1, 2, 3, 4)]
+    )
+    data = thing.data
+    for name in ("One", "Other"):
+        data.materials.append(stage.shader(name=name))
+    data.polygons.foreach_set("material_index", [0, 1])
+    data.polygons.foreach_set("use_smooth", [True, False])
+    places = np.array([data.vertices[loop.vertex_index].co[:2] for loop in data.loops])
+    data.uv_layers.new(name="UVMap").data.foreach_set("uv", (0.5 + 0.5 * places).astype(np.float32).ravel())
+    colors = data.color_attributes.new("Color", "FLOAT_COLOR", "CORNER")
+    colors.data.foreach_set("color", np.column_stack([places, np.zeros(8), np.ones(8)]).astype(np.float32).ravel())
+    _adaptive(scene, thing, 1.0, "SIMPLE")
+    mesh = export_told()[0].meshes[0]
+    corners = mesh.positions[mesh.triangles]
+    right = corners.mean(axis=1)[:, 0] > 0.0
+    return {
+        "triangles": len(mesh.triangles),
+        "uv error": float(np.abs(mesh.uvs - (0.5 + 0.5 * corners[..., :2])).max()),
+        "color error": float(np.abs(mesh.colors[..., :2] - corners[..., :2]).max()),
+        "slots agree": bool((mesh.material_slots == right).all()),
+        "normal error": float(np.abs(mesh.normals - (0.0, 0.0, 1.0)).max()),
+        "normals at corners": mesh.normals.ndim == 3,
+    }
+
+
+def limited():
+    """Return the error of an export for which there is no memory, and what it leaves."""
+    scene = stage.empty(width=800, height=600)
+    stage.camera((0, 0, 5), (0, 0, 0))
+    _adaptive(scene, stage.cube(2.0), 0.5)
+    before, real = _kept(), divided.most_triangles
+    divided.most_triangles = lambda: 1000
+    error = ""
+    try:
+        bpy.ops.render.render()
+    except RuntimeError as raised:
+        error = str(raised)
+    divided.most_triangles = real
+    return {"error": error, "kept": _kept() == before}

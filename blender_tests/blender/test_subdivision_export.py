@@ -1,0 +1,42 @@
+"""Adaptive subdivision of Blender's objects: when, by which settings, with which layers, within which memory."""
+
+import blenders
+import pytest
+from blenders import MODULE, PROGRAM
+
+pytestmark = pytest.mark.parametrize("which", [MODULE, PROGRAM])
+
+
+@pytest.fixture
+def case(which, tmp_path):
+    return lambda name: blenders.run(which, tmp_path, "subdivision_cases", name)
+
+
+def test_what_is_divided(case):
+    got = case("objects")
+    # A pixel is 0.1 wide. Two squares of side 2 have halves of 1, in edges of 0.2: 5 segments each. Before 4.5 Cycles divides
+    # the eight squares of side 1 that the modifier makes, whose halves have 3 segments.
+    whole = 2 * 10 * 10 * 2 if got["version"] >= [4, 5] else 8 * 6 * 6 * 2
+    assert got["divided"]["triangles"] == whole and got["kept"]
+    assert got["divided"]["told"] == [f"object 'Plane': adaptive subdivision makes {whole} triangles, which need 0 MB"]
+    for name in ("not last", "off"):
+        assert got[name]["told"] == [], name
+    # Two squares, or the eight of the modifier, in two triangles each.
+    assert got["off"]["triangles"] == 4 and got["not last"]["triangles"] == 16
+    assert got["levels"]["triangles"] == (2 * 4 * 2 if got["version"] >= [4, 5] else 8 * 4 * 2)
+    # Halves of 1 in edges of 0.4 have 3 segments; those of 0.5 have 2.
+    assert got["coarser"]["triangles"] == (2 * 6 * 6 * 2 if got["version"] >= [4, 5] else 8 * 4 * 4 * 2)
+    assert got["instances"]["meshes"] == 1 and got["instances"]["triangles"] == got["coarser"]["triangles"]
+
+
+def test_layers(case):
+    got = case("layers")
+    assert got["triangles"] > 1000 and got["slots agree"] and got["normals at corners"]
+    # Coordinates below 1 in single precision.
+    assert max(got["uv error"], got["color error"], got["normal error"]) < 1e-6
+
+
+def test_memory_is_a_limit(case):
+    got = case("limited")
+    assert "object 'Cube': adaptive subdivision by 0.5 pixels would make more than the 1000 triangles" in got["error"]
+    assert got["kept"]
