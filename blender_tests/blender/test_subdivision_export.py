@@ -14,18 +14,17 @@ def case(which, tmp_path):
 
 def test_what_is_divided(case):
     got = case("objects")
-    # A pixel is 0.1 wide. Two squares of side 2 have halves of 1, in edges of 0.2: 5 segments each. Before 4.5 Cycles divides
-    # the eight squares of side 1 that the modifier makes, whose halves have 3 segments.
-    whole = 2 * 10 * 10 * 2 if got["version"] >= [4, 5] else 8 * 6 * 6 * 2
-    assert got["divided"]["triangles"] == whole and got["kept"]
-    assert got["divided"]["told"] == [f"object 'Plane': adaptive subdivision makes {whole} triangles, which need 0 MB"]
+    # A pixel is 0.1 wide. Two squares of side 2 have halves of 1, in edges of 0.26: 4 segments each. Before 4.5 Cycles divides
+    # the eight squares of side 1 that the modifier makes, whose halves have 2 segments.
+    assert got["divided"]["triangles"] == 2 * 8 * 8 * 2 and got["kept"]
+    assert got["divided"]["told"] == ["object 'Plane': adaptive subdivision makes 256 triangles, which need 0 MB"]
     for name in ("not last", "off"):
         assert got[name]["told"] == [], name
     # Two squares, or the eight of the modifier, in two triangles each.
     assert got["off"]["triangles"] == 4 and got["not last"]["triangles"] == 16
     assert got["levels"]["triangles"] == (2 * 4 * 2 if got["version"] >= [4, 5] else 8 * 4 * 2)
-    # Halves of 1 in edges of 0.4 have 3 segments; those of 0.5 have 2.
-    assert got["coarser"]["triangles"] == (2 * 6 * 6 * 2 if got["version"] >= [4, 5] else 8 * 4 * 4 * 2)
+    # Edges of twice the length.
+    assert got["coarser"]["triangles"] == 2 * 4 * 4 * 2
     assert got["instances"]["meshes"] == 1 and got["instances"]["triangles"] == got["coarser"]["triangles"]
 
 

@@ -6,9 +6,10 @@ import pytest
 from addon.bindings.enums import CameraKind
 from addon.bindings.snapshot import Camera
 from addon.export.subdivision.catmull_clark import Cage
+from addon.export.subdivision.edge_table import Rate
 from addon.export.subdivision.patches import LimitPatches, LinearPatches
 from addon.export.subdivision.pixel_size import pixel_size
-from addon.export.subdivision.splitting import Rate, TooManyTrianglesError, split_patches, triangle_counts
+from addon.export.subdivision.splitting import TooManyTrianglesError, split_patches, triangle_counts
 from addon.export.subdivision.tessellation import tessellate
 
 CUBE = [(x, y, z) for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)]
@@ -49,19 +50,24 @@ def everywhere(count, side=5):
 def divided(surface, mesh, rate, most=1 << 30):
     table, quads, triangles = split_patches(surface, mesh, rate, most, nothing)
     counts = [triangle_counts(table.segments[pieces.edges]).sum() for pieces in (quads, triangles)]
-    found = tessellate(table, quads, triangles, nothing)
+    found = tessellate(table, quads, triangles, mesh, nothing)
     assert len(found.triangles) == sum(counts)
     return found
 
 
-def assert_covers(found, surface, patches):
-    """Each vertex must be one place in all its patches, and the triangles must cover each patch once without gaps."""
+def assert_covers(found, surface, mesh):
+    """Each vertex must be one place in all its patches, and the triangles must cover each face once without gaps."""
     places = surface.at(found.patches, found.uvs, nothing)
     assert np.abs(places - places[found.owners][found.vertices]).max() < ROUNDING
-    a, b, c = (found.uvs[found.triangles[:, corner]] for corner in range(3))
+    # Lay each face out as a regular polygon, that its patches cover.
+    sizes = np.diff(mesh.starts)
+    turns = 2.0 * np.pi * (np.arange(len(mesh.corners)) - np.repeat(mesh.starts[:-1], sizes)) / np.repeat(sizes, sizes)
+    laid = LinearPatches(np.stack([np.cos(turns), np.sin(turns)], axis=1), mesh).at(found.patches, found.uvs, nothing)
+    a, b, c = (laid[found.triangles[:, corner]] for corner in range(3))
     area = 0.5 * ((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
     assert area.min() > 0.0
-    assert np.bincount(found.patches[found.triangles[:, 0]], area, patches) == pytest.approx(np.ones(patches), abs=1e-12)
+    faces = np.repeat(np.arange(len(sizes)), sizes)[found.patches[found.triangles[:, 0]]]
+    assert np.bincount(faces, area) == pytest.approx(0.5 * sizes * np.sin(2.0 * np.pi / sizes), rel=1e-9)
 
 
 def edge_uses(found):
@@ -125,7 +131,7 @@ def test_no_cracks(smooth):
     surface = LimitPatches(closed, nothing) if smooth else LinearPatches(closed.values[closed.corners], closed)
     eye = Camera(matrix=np.array([(1, 0, 0, 1.0), (0, 1, 0, -0.5), (0, 0, 1, 4.0)]), width=40, height=40)
     found = divided(surface, closed, Rate(1.0, 12, np.eye(4), pixel_size(eye, 1.0)))
-    assert_covers(found, surface, len(closed.corners))
+    assert_covers(found, surface, closed)
     _, uses = edge_uses(found)
     assert len(found.triangles) > 1000 and (uses == 2).all()
     # Euler's formula of a closed surface without holes.
@@ -138,7 +144,7 @@ def test_pieces_of_three_corners():
     surface = LinearPatches(strip.values[strip.corners], strip)
     table, quads, triangles = split_patches(surface, strip, Rate(0.5, 12), 1 << 30, nothing)
     assert len(triangles.patches)
-    assert_covers(tessellate(table, quads, triangles, nothing), surface, 4)
+    assert_covers(tessellate(table, quads, triangles, strip, nothing), surface, strip)
 
 
 def test_edges_are_no_longer_than_the_rate():

@@ -12,10 +12,11 @@ from ..attributes import POLYGONS, RENDER_COLOR, TANGENT, name_in_blender, read_
 from ..mesh import face_slots, read_positions
 from ..tangents import corner_tangents
 from .cage import read_cage, uv_cage
+from .edge_table import Rate
 from .memory import BYTES_OF_TRIANGLE, most_triangles
 from .patches import LimitPatches, LinearPatches
 from .pixel_size import pixel_size
-from .splitting import Rate, TooManyTrianglesError, split_patches
+from .splitting import TooManyTrianglesError, split_patches
 from .tessellation import tessellate
 
 
@@ -83,7 +84,7 @@ class _Divided:
                 f"object '{self._name}': adaptive subdivision by {rate} would make more than the {most} triangles for which "
                 f"the {size:.1f} GB of free memory suffice: raise the dicing rate, or lower Max Subdivisions"
             ) from None
-        return tessellate(table, quads, triangles, self._poll)
+        return tessellate(table, quads, triangles, self._cage, self._poll)
 
     def _normals(self, surface, at, positions, triangles, faces):
         """Return the normals as MeshData has them: of the limit surface, but flat faces have those of their triangles."""

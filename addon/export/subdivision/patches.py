@@ -75,6 +75,32 @@ class LinearPatches:
         return unit(_bilinear(self._normals, patches, uvs))
 
 
+class FacePatches:
+    """A surface with further patches: patch corners + f is the whole of face f, a quad whose first corner is at (0, 0)."""
+
+    def __init__(self, surface, cage):
+        self._surface, self._starts, self._corners = surface, cage.starts, len(cage.corners)
+
+    def is_corner(self, patches):
+        return patches < self._corners
+
+    def at(self, patches, uvs, poll):
+        return self._surface.at(*self.of_corners(patches, uvs), poll)
+
+    def of_corners(self, patches, uvs):
+        """Return the points as patches of corners and their coordinates."""
+        whole = np.flatnonzero(patches >= self._corners)
+        patches, uvs = patches.copy(), uvs.copy()
+        u, v = uvs[whole].T
+        corner = _CHILDREN[(v > 0.5).astype(int), (u > 0.5).astype(int)]
+        patches[whole] = self._starts[patches[whole] - self._corners] + corner
+        # From each corner, the directions to the next one and to the one before.
+        ways = np.stack([u, v, 1.0 - u, 1.0 - v], axis=1)
+        rows = np.arange(len(whole))
+        uvs[whole, 0], uvs[whole, 1] = 2.0 * ways[rows, corner], 2.0 * ways[rows, (corner + 1) % 4]
+        return patches, uvs
+
+
 def unit(vectors):
     lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
     return np.where(lengths > 0.0, vectors / np.where(lengths > 0.0, lengths, 1.0), (0.0, 0.0, 1.0))

@@ -9,37 +9,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from .catmull_clark import Edges
+from .edge_table import MOST_SEGMENTS, SPLIT, EdgeTable
+from .patches import FacePatches
 
-# The number of segments of an edge that must be split, and the limits of Cycles.
-_SPLIT = -1
-_MOST_SEGMENTS = 8
-_DEEPEST = 13
+_SQUARE = np.array(((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)))
 # Of edges of equal length, the first ones of a piece count as longer, whatever the rounding.
 _BIAS = 1.00012345
 
 
 class TooManyTrianglesError(Exception):
     """The pieces have more triangles than allowed."""
-
-
-@dataclass(frozen=True)
-class Rate:
-    """How long segments may be: rate times size(points) of the world, or rate in object space if matrix is None."""
-
-    rate: float
-    most_levels: int
-    matrix: np.ndarray | None = None  # from the object to the world
-    size: object = None  # a pixel_size()
-
-    def points(self, points):
-        return points if self.matrix is None else points @ self.matrix[:3, :3].T + self.matrix[:3, 3]
-
-    def lengths(self, start, end):
-        """Return the lengths between points of points(): as they are, and in units of the rate."""
-        lengths = np.linalg.norm(end - start, axis=1)
-        if self.matrix is None:
-            return lengths, lengths / self.rate
-        return lengths, lengths / np.maximum(self.rate * self.size(0.5 * (start + end)), 1e-30)
 
 
 @dataclass(frozen=True)
@@ -70,92 +49,6 @@ def joined(pieces, sides):
     return Pieces(*(np.concatenate(part) for part in zip(*(tuple(vars(piece).values()) for piece in pieces), strict=True)))
 
 
-class EdgeTable:
-    """All edges: their ends, their number of segments, their vertices between the ends, and their halves."""
-
-    def __init__(self, surface, rate, poll):
-        self._surface, self._rate, self._poll = surface, rate, poll
-        self.vertices = 0
-        self.ends = np.zeros((0, 2), np.int64)
-        self.segments = np.zeros(0, np.int64)
-        self.inner = np.zeros(0, np.int64)  # the first vertex after the start; the others follow
-        self.length = np.zeros(0)
-        self.depth = np.zeros(0, np.int64)
-        self.middle = np.full(0, -1)  # the vertex between the halves
-        self.halves = np.full((0, 2), -1)
-        self._patch, self._uvs = np.zeros(0, np.int64), np.zeros((0, 2, 2))
-
-    def add(self, ends, patch, uvs, depth, segments=None, inner=None, length=None):
-        """Add edges and return their numbers. segments: of edges whose vertices are known; else the segments are measured."""
-        if segments is None:
-            segments, length = self._measured(patch, uvs, depth)
-            own = np.maximum(segments - 1, 0)
-            inner = self.vertices + np.cumsum(own) - own
-            self.vertices += int(own.sum())
-        first, count = len(self.ends), len(ends)
-        none = np.full((count, 2), -1)
-        news = (ends, segments, inner, length, depth, none[:, 0], none, patch, uvs)
-        names = ("ends", "segments", "inner", "length", "depth", "middle", "halves", "_patch", "_uvs")
-        for name, new in zip(names, news, strict=True):
-            setattr(self, name, np.concatenate([getattr(self, name), new]))
-        return np.arange(first, first + count)
-
-    def _measured(self, patch, uvs, depth):
-        """Return the segments, or _SPLIT, and the lengths of edges, from their ends and their middles."""
-        at = [
-            self._rate.points(self._surface.at(patch, np.ascontiguousarray(place), self._poll))
-            for place in (uvs[:, 0], 0.5 * (uvs[:, 0] + uvs[:, 1]), uvs[:, 1])
-        ]
-        (long_a, a), (long_b, b) = self._rate.lengths(at[0], at[1]), self._rate.lengths(at[1], at[2])
-        most = float(1 << 24)
-        least, wanted = np.ceil(np.minimum(a + b, most)), np.ceil(np.minimum(2.0 * np.maximum(a, b), most))
-        segments = np.maximum(wanted, 1.0).astype(np.int64)
-        segments[(wanted - least > 1.0) | (segments > _MOST_SEGMENTS)] = _SPLIT
-        # A patch is half as wide as the face of which it shows a corner.
-        side = np.linalg.norm(uvs[:, 1] - uvs[:, 0], axis=1)
-        limit = (0.5 * (1 << self._rate.most_levels) * side).astype(np.int64)
-        segments = np.where(limit <= 1, 1, np.minimum(segments, limit))
-        segments[(segments == _SPLIT) & (depth >= _DEEPEST)] = _MOST_SEGMENTS
-        return segments, long_a + long_b
-
-    def split(self, numbers):
-        """Give halves to the edges that have none."""
-        numbers = np.unique(numbers)
-        numbers = numbers[self.middle[numbers] < 0]
-        must = self.segments[numbers] == _SPLIT
-        self._halve(numbers[must], self.vertices + np.arange(must.sum()), measured=True)
-        rest = numbers[~must]
-        self._halve(rest, self.inner[rest] + self.segments[rest] // 2 - 1, measured=False)
-
-    def _halve(self, numbers, middles, measured):
-        if measured:
-            self.vertices += len(numbers)
-        ends, uvs, patch, depth = self.ends[numbers], self._uvs[numbers], self._patch[numbers], self.depth[numbers] + 1
-        fraction = self.fraction(numbers)
-        between = uvs[:, 0] + fraction[:, None] * (uvs[:, 1] - uvs[:, 0])
-        known = ({}, {})
-        if not measured:
-            first = self.segments[numbers] // 2
-            inner, length = self.inner[numbers], self.length[numbers]
-            known = (
-                {"segments": first, "inner": inner, "length": fraction * length},
-                {
-                    "segments": self.segments[numbers] - first,
-                    "inner": inner + first,
-                    "length": (1.0 - fraction) * length,
-                },
-            )
-        a = self.add(np.stack([ends[:, 0], middles], 1), patch, np.stack([uvs[:, 0], between], 1), depth, **known[0])
-        b = self.add(np.stack([middles, ends[:, 1]], 1), patch, np.stack([between, uvs[:, 1]], 1), depth, **known[1])
-        self.middle[numbers] = middles
-        self.halves[numbers] = np.stack([a, b], axis=1)
-
-    def fraction(self, numbers):
-        """Return where the middle of the edges lies, from start to end."""
-        segments = self.segments[numbers]
-        return np.where(segments == _SPLIT, 0.5, segments // 2 / np.maximum(segments, 1))
-
-
 def split_patches(surface, cage, rate, most_triangles, poll):
     """Return (EdgeTable, quads, triangles), the Pieces of a cage's patches; raise TooManyTrianglesError beyond the most."""
     return _Splitter(surface, cage, rate, most_triangles, poll).run()
@@ -163,7 +56,8 @@ def split_patches(surface, cage, rate, most_triangles, poll):
 
 class _Splitter:
     def __init__(self, surface, cage, rate, most_triangles, poll):
-        self._table, self._poll, self._most = EdgeTable(surface, rate, poll), poll, most_triangles
+        self._table = EdgeTable(FacePatches(surface, cage), rate, poll)
+        self._poll, self._most = poll, most_triangles
         self._start = self._whole_patches(cage)
         self._done = {3: [], 4: []}
         self._count = 0
@@ -180,31 +74,72 @@ class _Splitter:
         return self._table, *(joined(self._done[sides], sides) for sides in (4, 3))
 
     def _whole_patches(self, cage):
+        """Return the Pieces at the start: quads as a whole, and a piece for each corner of the other faces."""
         after, before, faces = cage.neighbours()
-        edges = Edges(cage, after)
-        vertices, count, corners = len(cage.values), len(edges.ends), cage.corners
-        middles = vertices + np.arange(count)
-        centres = vertices + count + np.arange(len(cage.starts) - 1)
+        edges, corners, here = Edges(cage, after), cage.corners, np.arange(len(cage.corners))
+        vertices, count = len(cage.values), len(edges.ends)
+        middles, centres = vertices + np.arange(count), vertices + count + np.arange(len(cage.starts) - 1)
         self._table.vertices = vertices + count + len(centres)
-        here = np.arange(len(corners))
-        ahead, behind = edges.of_corner, edges.of_corner[before]
-        ahead = 2 * ahead + (edges.ends[ahead, 1] == corners)
-        behind = 2 * behind + (edges.ends[behind, 1] == corners)
-        # From the ends of each edge to its middle, of any patch beside it; then from the middles to the centres.
-        patch, uvs = np.zeros(2 * count, np.int64), np.zeros((2 * count, 2, 2))
-        patch[behind], uvs[behind] = here, ((0.0, 0.0), (0.0, 1.0))
-        patch[ahead], uvs[ahead] = here, ((0.0, 0.0), (1.0, 0.0))
-        table = self._table
-        table.add(np.stack([edges.ends.reshape(-1), np.repeat(middles, 2)], 1), patch, uvs, np.zeros(2 * count, np.int64))
-        ends = np.stack([middles[edges.of_corner], centres[faces]], axis=1)
-        inward = np.broadcast_to(np.array(((1.0, 0.0), (1.0, 1.0))), (len(here), 2, 2))
-        table.add(ends, here, inward, np.zeros(len(here), np.int64))
-        square = np.broadcast_to(np.array(((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))), (len(here), 4, 2))
-        reverse = np.broadcast_to(np.array((False, False, True, True)), (len(here), 4))
-        pieces = Pieces(here, square, np.stack([ahead, 2 * count + here, 2 * count + before, behind], axis=1), reverse)
-        # The four pieces of a quad have the quad's own directions, on which the diagonals of their grids depend.
-        corner = here - cage.starts[faces]
-        return pieces.turned(np.where(np.diff(cage.starts)[faces] == 4, -corner, 0))
+        quad = np.diff(cage.starts) == 4
+        on_quad = quad[faces]
+        forward = edges.ends[edges.of_corner, 0] == corners
+        self._add_halves(cage, edges, middles, forward, on_quad)
+        table, none = self._table, np.zeros(count, np.int64)
+        # Quads first split whole edges, which other faces know by their halves alone.
+        split = {"segments": none + SPLIT, "inner": none, "length": np.zeros(count)}
+        whole = table.add(edges.ends, none, np.zeros((count, 2, 2)), none - 1, **split)
+        table.join(whole, middles, 2 * np.arange(count)[:, None] + (0, 1))
+        round_quads = whole[edges.of_corner[on_quad]].reshape(-1, 4)
+        turned = ~forward[on_quad].reshape(-1, 4)
+        patches = len(corners) + np.flatnonzero(quad)
+        quads = Pieces(patches, np.broadcast_to(_SQUARE, (len(patches), 4, 2)), round_quads, turned)
+        # Spokes from the middles of edges to the centre.
+        own = here[~on_quad]
+        inward = np.broadcast_to(_SQUARE[1:3], (len(own), 2, 2))
+        segments, length = table.summed(own, inward)
+        ends, none = np.stack([middles[edges.of_corner[own]], centres[faces[own]]], axis=1), np.zeros(len(own), np.int64)
+        spokes = np.zeros(len(corners), np.int64)
+        spokes[own] = table.add(ends, own, inward, none, segments=segments, length=length)
+        ahead, behind = edges.of_corner[own], edges.of_corner[before[own]]
+        towards = forward[before[own]]
+        sides = np.stack([2 * ahead + ~forward[own], spokes[own], spokes[before[own]], 2 * behind + towards], axis=1)
+        yes = np.ones(len(own), bool)
+        reverse = np.stack([~forward[own], ~yes, yes, ~towards], axis=1)
+        return joined([quads, Pieces(own, np.broadcast_to(_SQUARE, (len(own), 4, 2)), sides, reverse)], 4)
+
+    def _add_halves(self, cage, edges, middles, forward, on_quad):
+        """Add the edges 2 e from the start of edge e to its middle and 2 e + 1 from there to its end.
+
+        As in Cycles, the first face beside an edge measures it: a quad splits uneven halves, other faces sum their parts.
+        """
+        here = np.arange(len(cage.corners))
+        first = np.zeros(len(middles), np.int64)
+        first[edges.of_corner[::-1]] = here[::-1]
+        by_quad, forward = on_quad[first], forward[first]
+        faces = np.repeat(np.arange(len(cage.starts) - 1), np.diff(cage.starts))[first]
+        corner = first - cage.starts[faces]
+        start, end = _SQUARE[corner % 4], _SQUARE[(corner + 1) % 4]
+        start, end = np.where(forward[:, None], start, end), np.where(forward[:, None], end, start)
+        middle = 0.5 * (start + end)
+        uvs = np.stack([start, middle, middle, end], axis=1).reshape(-1, 2, 2)
+        patch = np.repeat(len(here) + faces, 2)
+        # Of a corner's patch, the half at the corner is the lower side; the next corner's patch has the other half at its left.
+        after = cage.neighbours()[0][first]
+        low, left = _SQUARE[[0, 1]], _SQUARE[[3, 0]]
+        for half in (0, 1):
+            near = forward == (half == 0)
+            rows = np.flatnonzero(~by_quad)
+            patch[2 * rows + half] = np.where(near, first, after)[rows]
+            side = np.where(near[:, None, None], low, left)
+            # The half at the start of an edge ends at the middle, and the other one starts there.
+            outward = near if half == 0 else ~near
+            uvs[2 * rows + half] = np.where(outward[:, None, None], side, side[:, ::-1])[rows]
+        table, depth = self._table, np.zeros(2 * len(middles), np.int64)
+        ends = np.stack([edges.ends[:, 0], middles, middles, edges.ends[:, 1]], axis=1).reshape(-1, 2)
+        summed = np.repeat(~by_quad, 2)
+        segments, length = table.measured(patch, uvs, depth)
+        segments[summed], length[summed] = table.summed(patch[summed], uvs[summed])
+        table.add(ends, patch, uvs, depth, segments=segments, length=length)
 
     def _keep(self, pieces):
         self._done[pieces.edges.shape[1]].append(pieces)
@@ -214,8 +149,8 @@ class _Splitter:
         """Keep the quads that are fine enough; return the quads and the triangles of the others."""
         t, length = self._table.segments[quads.edges], self._table.length[quads.edges]
         low, high = np.minimum(t[:, :2], t[:, 2:]), np.maximum(t[:, :2], t[:, 2:])
-        uneven = (low[:, ::-1] >= 2) & (low > _MOST_SEGMENTS) & (high // np.maximum(low, 1) >= 2)
-        ways = (low == _SPLIT) | uneven[:, ::-1]
+        uneven = (low[:, ::-1] >= 2) & (low > MOST_SEGMENTS) & (high // np.maximum(low, 1) >= 2)
+        ways = (low == SPLIT) | uneven[:, ::-1]
         along = np.where(length[:, 0] + length[:, 2] >= (length[:, 1] + length[:, 3]) / _BIAS, 0, 1)
         along = np.where(ways.all(axis=1), along, np.where(ways[:, 0], 0, 1))
         split = ways.any(axis=1)
@@ -282,7 +217,7 @@ class _Splitter:
     def _split_triangles(self, triangles):
         """Keep the triangles that are fine enough; return the halves of the others, cut at the longest edge to be split."""
         table = self._table
-        must = table.segments[triangles.edges] == _SPLIT
+        must = table.segments[triangles.edges] == SPLIT
         split = must.any(axis=1)
         self._keep(triangles.take(~split))
         triangles, must = triangles.take(split), must[split]

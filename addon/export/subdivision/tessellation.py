@@ -5,6 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .edge_table import MOST_SEGMENTS
+from .patches import FacePatches
+
 _SQUARE = np.array(((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)))
 _TRIANGLE = _SQUARE[[0, 1, 3]]
 
@@ -20,8 +23,8 @@ class Tessellation:
     triangles: np.ndarray  # (triangles, 3), points
 
 
-def tessellate(table, quads, triangles, poll):
-    """Return the Tessellation of the Pieces of split_patches()."""
+def tessellate(table, quads, triangles, cage, poll):
+    """Return the Tessellation of the Pieces of split_patches() of a cage."""
     patches, uvs, vertices, faces = [], [], [], []
     count = 0
     for pieces in (quads, triangles):
@@ -32,7 +35,8 @@ def tessellate(table, quads, triangles, poll):
         for kind, first, last in zip(kinds.tolist(), starts, starts[1:], strict=False):
             poll()
             group = pieces.take(order[first:last])
-            places, pattern = _pattern(tuple(kind))
+            # Patterns of more segments are rare and large: make them anew.
+            places, pattern = (_pattern if max(kind) > MOST_SEGMENTS else _kept_pattern)(tuple(kind))
             own = _vertices(table, group, len(places))
             points = len(own) * len(places)
             patches.append(np.repeat(group.patches, len(places)))
@@ -44,6 +48,8 @@ def tessellate(table, quads, triangles, poll):
     joined = [np.concatenate(part) if part else np.zeros((0, 3), np.int64) for part in (vertices, faces)]
     numbers = joined[0].reshape(-1)
     patches = np.concatenate(patches) if patches else np.zeros(0, np.int64)
+    uvs = np.clip(np.concatenate(uvs), 0.0, 1.0) if uvs else np.zeros((0, 2))
+    patches, uvs = FacePatches(None, cage).of_corners(patches, uvs)
     # As in Cycles, the first face with a vertex decides its normal, which faces beside a crease do not share.
     order = np.argsort(patches, kind="stable")[::-1]
     owners = np.full(table.vertices, -1)
@@ -54,7 +60,7 @@ def tessellate(table, quads, triangles, poll):
     triangles = joined[1][np.argsort(patches[joined[1][:, 0]], kind="stable")]
     return Tessellation(
         patches=patches,
-        uvs=np.clip(np.concatenate(uvs), 0.0, 1.0) if uvs else np.zeros((0, 2)),
+        uvs=uvs,
         vertices=renumbered[numbers],
         owners=owners[used],
         triangles=triangles,
@@ -86,6 +92,10 @@ def _vertices(table, pieces, places):
 
 
 @functools.cache
+def _kept_pattern(segments):
+    return _pattern(segments)
+
+
 def _pattern(segments):
     """Return the places, (n, 2), of vertices along the edges and inside, and triangles between them."""
     corners = _SQUARE if len(segments) == 4 else _TRIANGLE

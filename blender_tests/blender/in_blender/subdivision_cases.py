@@ -35,7 +35,7 @@ def _kept():
 def _quads(scene):
     thing = stage.plane(2.0)
     thing.modifiers.new("Row", "ARRAY").count = 2
-    return thing, _adaptive(scene, thing, 2.0, "SIMPLE")
+    return thing, _adaptive(scene, thing, 2.6, "SIMPLE")
 
 
 def objects():
