@@ -136,7 +136,7 @@ def subdivided_map_smoothed(scene, rule):
 def subdivided_instances(scene):
     """A displaced body and two instances of it, larger and turned, that are divided as the original is."""
     thing = _gem(scene, _hills(0.3), True)
-    divide(scene, thing, 2.0)
+    divide(scene, thing)
     source = bpy.data.collections.new("Source")
     scene.collection.children.link(source)
     scene.collection.objects.unlink(thing)

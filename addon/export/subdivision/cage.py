@@ -75,11 +75,26 @@ def uv_cage(cage, uvs, rule):
         found[:, 1:], corners, cage.starts, creases, edges.sharpness[edges.of_corner[sharp]], cage.vertex_sharpness[vertex]
     )
     sharpness = split.vertex_sharpness.copy()
+    own = Edges(split, after)
+    on_border = _at(own.ends[own.faces != 2], len(found))
+    alone = np.bincount(corners, minlength=len(found)) == 1
+    values = np.bincount(vertex, minlength=len(cage.values))[vertex]
     if rule == "PRESERVE_BOUNDARIES":
-        own = Edges(split, after)
-        sharpness[own.ends[own.faces != 2].reshape(-1)] = np.inf
+        sharpness[on_border] = np.inf
     if rule in _SHARP_CORNERS:
-        sharpness[np.bincount(corners, minlength=len(found)) == 1] = np.inf
+        sharpness[alone] = np.inf
     if rule in _SHARP_JUNCTIONS:
-        sharpness[np.bincount(vertex, minlength=len(cage.values))[vertex] > 2] = np.inf
+        sharpness[values > 2] = np.inf
+    if rule == "PRESERVE_CORNERS_JUNCTIONS_AND_CONCAVE":
+        # The other side of a corner, and the ends of seams inside the mesh.
+        beside = _at(vertex[alone], len(cage.values))[vertex]
+        inside = ~_at(edges.ends[edges.faces != 2], len(cage.values))[vertex]
+        sharpness[(values == 2) & beside | (values == 1) & on_border & inside] = np.inf
     return Cage(split.values, corners, cage.starts, creases, split.crease_sharpness, sharpness)
+
+
+def _at(numbers, count):
+    """Return whether each of count is among the numbers."""
+    found = np.zeros(count, bool)
+    found[numbers.reshape(-1)] = True
+    return found
