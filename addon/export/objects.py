@@ -10,7 +10,7 @@ from ..messages.severity import Severity
 from .attributes import POLYGONS
 from .mesh import export_mesh, read_positions, shown_mesh
 from .mesh_differences import differences, lost_by_exact_shape
-from .subdivision.divider import size_in_words
+from .subdivision.divider import PLACES_OTHERWISE, size_in_words
 from .unsupported import check_object
 from .visibility import object_hidden_from
 
@@ -170,6 +170,9 @@ class Objects:
 
         mesh = read() if self._parts is None else self._parts.mesh(thing, owner, data_key, wanted, read)
         self.messages.add(f"object '{name}': {size_in_words(mesh)}", severity=Severity.HINT)
+        if PLACES_OTHERWISE:
+            text = "Cycles of this version places the triangles otherwise, which coarse displacement shows; a low dicing rate helps"
+            self.messages.add(f"object '{name}': {text}", "feature:facets of adaptive subdivision", Severity.HINT)
         return mesh
 
     def _placement(self, thing, owner, name, kind, data_key):

@@ -135,19 +135,19 @@ def subdivided_map_smoothed(scene, rule):
 @case(quick=True, bounces=1)
 def subdivided_instances(scene):
     """A displaced body and two instances of it, larger and turned, that are divided as the original is."""
-    thing = _gem(scene, _hills(0.3), True)
+    thing = _gem(scene, _hills(0.15), True)
     divide(scene, thing)
     source = bpy.data.collections.new("Source")
     scene.collection.children.link(source)
     scene.collection.objects.unlink(thing)
     source.objects.link(thing)
-    for place, scale in (((-1.9, 0.8, 0.2), 1.2), ((1.8, -0.3, -0.2), 0.8)):
+    for place, scale in (((-2.2, 0.8, -0.6), 1.2), ((1.9, -0.3, 0.0), 0.8)):
         copy = bpy.data.objects.new("Copy", None)
         copy.instance_type, copy.instance_collection = "COLLECTION", source
         copy.location, copy.scale, copy.rotation_euler = place, 3 * [scale], (0.2, 0.1, 0.7)
         scene.collection.objects.link(copy)
     _lit(scene)
-    camera(scene, (0, -5, 2.4), (0, 0, 0.8))
+    camera(scene, (0, -8, 3.5), (-0.2, 0, 0.7))
 
 
 @case(since=(5, 0))
@@ -162,13 +162,13 @@ def subdivided_by_lengths(scene):
 
 @case(bounces=1)
 def subdivided_without_perspective(scene):
-    thing = _gem(scene, _hills(0.3), True)
+    thing = _gem(scene, _hills(0.15), True)
     divide(scene, thing)
     _lit(scene)
     camera(scene, (0, -4.2, 2.2), (0, 0, 0.85), type="ORTHO", ortho_scale=4.0)
 
 
-@case(bounces=1)
+@case(bounces=1, since=(4, 5))
 def subdivided_by_another_camera(scene):
     """The camera that divides the ground looks at another part of it, so that the picture shows a coarse one."""
     mesh = parts.plane_mesh("Ground", 12.0)

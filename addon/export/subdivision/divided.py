@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import bpy
 import numpy as np
 
 from ...bindings.abi import LancerError
@@ -18,6 +19,9 @@ from .patches import LimitPatches, LinearPatches
 from .pixel_size import pixel_size
 from .splitting import TooManyTrianglesError, split_patches
 from .tessellation import tessellate
+
+# Before 4.5 each face has vertices of its own in Cycles, and its own normals at a crease.
+_KEEPS_SIDES = bpy.app.version < (4, 5)
 
 
 def export_divided(mesh, name, poll, wanted, adaptive, camera, matrix):
@@ -91,11 +95,15 @@ class _Divided:
         flat = _flat_faces(self._mesh)
         if flat.all():
             return None
-        normals = surface.normals(*at, self._poll).astype(np.float32)
         rows = np.flatnonzero(flat[faces])
-        if len(rows) == 0:
-            return normals
-        corners = normals[triangles]
+        if _KEEPS_SIDES and len(self._cage.creases):
+            found = self._found
+            corners = surface.normals(found.patches, found.uvs, self._poll).astype(np.float32)[found.triangles]
+        else:
+            normals = surface.normals(*at, self._poll).astype(np.float32)
+            if len(rows) == 0:
+                return normals
+            corners = normals[triangles]
         places = positions[triangles[rows]].astype(float)
         across = np.cross(places[:, 1] - places[:, 0], places[:, 2] - places[:, 0])
         lengths = np.linalg.norm(across, axis=1, keepdims=True)

@@ -1,10 +1,15 @@
 """Which objects of a depsgraph are divided adaptively, by which camera, and their meshes."""
 
+import bpy
+
 from ...messages.messages import Messages
 from ..camera import export_camera
 from .divided import export_divided
 from .memory import BYTES_OF_TRIANGLE
 from .modifier import adaptive, cage_of
+
+# Cycles before 4.5 splits patches by another order, into more segments.
+PLACES_OTHERWISE = bpy.app.version < (4, 5)
 
 
 class Divider:
