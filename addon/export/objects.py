@@ -171,7 +171,7 @@ class Objects:
         mesh = read() if self._parts is None else self._parts.mesh(thing, owner, data_key, wanted, read)
         self.messages.add(f"object '{name}': {size_in_words(mesh)}", severity=Severity.HINT)
         if PLACES_OTHERWISE:
-            text = "Cycles of this version places the triangles otherwise, which coarse displacement shows; a low dicing rate helps"
+            text = "Cycles of this version cuts the faces elsewhere, which coarse displacement shows; a low dicing rate helps"
             self.messages.add(f"object '{name}': {text}", "feature:facets of adaptive subdivision", Severity.HINT)
         return mesh
 

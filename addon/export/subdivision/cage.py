@@ -8,14 +8,16 @@ from ..edges import edge_ends
 from .catmull_clark import ENDLESS, Cage, Edges
 
 # Since 4.5 Cycles refines the cage three times; what is sharper than that counts as smooth from there, but for full creases.
-_MOST_SHARP = 3.0 if bpy.app.version >= (4, 5) else ENDLESS
+# Before, it refines by the length of edges in the picture, at most ten times, and full creases are no exception.
+_THREE_LEVELS = bpy.app.version >= (4, 5)
+_LEVELS, _MOST_LEVELS = 3, 10
 # Which corners of a UV map stay sharp, by the modifier's choice; LINEAR maps are not smoothed at all.
 _SHARP_CORNERS = {"PRESERVE_CORNERS", "PRESERVE_CORNERS_AND_JUNCTIONS", "PRESERVE_CORNERS_JUNCTIONS_AND_CONCAVE"}
 _SHARP_JUNCTIONS = _SHARP_CORNERS - {"PRESERVE_CORNERS"}
 
 
-def read_cage(mesh, positions, adaptive):
-    """Return the Cage of a mesh. positions: (vertices, 3)."""
+def read_cage(mesh, positions, adaptive, rate):
+    """Return the Cage of a mesh. positions: (vertices, 3); rate: the Rate by which it is divided."""
     starts = np.append(read(mesh.polygons, "loop_start", np.int32, 1), len(mesh.loops)).astype(np.int64)
     corners = corner_vertices(mesh).astype(np.int64)
     creases, sharpness, vertices = np.zeros((0, 2), np.int64), np.zeros(0), np.zeros(len(positions))
@@ -27,7 +29,10 @@ def read_cage(mesh, positions, adaptive):
         layer = mesh.vertex_creases[0].data if bpy.app.version < (4, 0) and mesh.vertex_creases else ()
         vertices = ENDLESS * _creases(mesh, "crease_vert", "POINT", layer, "value", len(positions))
     cage = Cage(positions.astype(float), corners, starts, creases, sharpness, vertices)
-    return _with_sharp_vertices(cage, adaptive)
+    cage = _with_sharp_vertices(cage, adaptive)
+    levels = _LEVELS if _THREE_LEVELS else _levels(cage, rate)
+    sharpness = (_limited(values, levels) for values in (cage.crease_sharpness, cage.vertex_sharpness))
+    return Cage(cage.values, cage.corners, cage.starts, cage.creases, *sharpness)
 
 
 def _creases(mesh, name, domain, old, field, count):
@@ -52,11 +57,20 @@ def _with_sharp_vertices(cage, adaptive):
     sharpness = np.where(two, np.minimum(cage.vertex_sharpness + both, ENDLESS), cage.vertex_sharpness)
     if adaptive.sharp_corners:
         sharpness[np.bincount(cage.corners, minlength=count) == 1] = np.inf
-    return Cage(cage.values, cage.corners, cage.starts, cage.creases, _limited(cage.crease_sharpness), _limited(sharpness))
+    return Cage(cage.values, cage.corners, cage.starts, cage.creases, cage.crease_sharpness, sharpness)
 
 
-def _limited(sharpness):
-    return np.where(sharpness >= ENDLESS, np.inf, np.minimum(sharpness, _MOST_SHARP))
+def _levels(cage, rate):
+    """Return the refinements after which the longest edge is about as long as the rate."""
+    ends = Edges(cage, cage.neighbours()[0]).ends
+    start, end = (rate.points(cage.values[ends[:, side]]) for side in (0, 1))
+    longest = rate.lengths(start, end)[1].max(initial=1.0)
+    return min(int(np.log2(longest) + 1.0), _MOST_LEVELS)
+
+
+def _limited(sharpness, levels):
+    limited = np.minimum(sharpness, levels)
+    return np.where(sharpness >= ENDLESS, np.inf, limited) if _THREE_LEVELS else limited
 
 
 def uv_cage(cage, uvs, rule):

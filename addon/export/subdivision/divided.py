@@ -37,13 +37,13 @@ class _Divided:
     def __init__(self, mesh, name, poll, wanted, adaptive, camera, matrix):
         self._mesh, self._name, self._poll, self._wanted, self._adaptive = mesh, name, poll, wanted, adaptive
         self._positions = read_positions(mesh)
-        self._cage = read_cage(mesh, self._positions, adaptive)
-        poll()
         if adaptive.in_pixels:
             size = pixel_size(camera, adaptive.offscreen_scale)
             self._rate = Rate(adaptive.rate, adaptive.most_levels, np.asarray(matrix, float), size)
         else:
             self._rate = Rate(adaptive.rate, adaptive.most_levels)
+        self._cage = read_cage(mesh, self._positions, adaptive, self._rate)
+        poll()
 
     def export(self):
         cage, poll = self._cage, self._poll
