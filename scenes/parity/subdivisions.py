@@ -115,7 +115,8 @@ def _gem(scene, surface, smooth):
 
 @variants(values={"smooth": True, "flat": False}, quick=True)
 def subdivided_maps(scene, smooth):
-    thing = _gem(scene, _glowing(_checks), smooth)
+    """Checks of a UV map on smooth faces, and the normals of flat ones."""
+    thing = _gem(scene, _glowing(_checks if smooth else "Normal"), smooth)
     thing.rotation_euler = (0.3, -0.2, 0.3)
     divide(scene, thing)
     sky(scene)

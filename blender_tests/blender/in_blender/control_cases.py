@@ -218,6 +218,7 @@ class _Stage:
     def _of_subdivision(self, now):
         """A cube that its levels limit, and one that a camera beside the scene's divides by its pixels."""
         cycles, modifier = self.scene.cycles, self.cube.modifiers[-1]
+        modifier.subdivision_type = "SIMPLE"
         if hasattr(modifier, "use_adaptive_subdivision"):
             modifier.use_adaptive_subdivision = True
         else:
