@@ -1,12 +1,14 @@
 """Colour nodes: each reader takes (graph, site, output) and returns a value, or None if the node is not supported."""
 
+import functools
 import math
 
 from mathutils import Color
 
 from ..bindings.enums import ColorModel, MathOperation, MixMode, NodeKind, VectorOperation
 from ..bindings.shading import NodeRef
-from .arithmetic import clamp, triple
+from . import cycles_folds
+from .arithmetic import clamp, each, is_constant, triple
 from .curves import constant_of_ramp, ramp_by_table
 from .maths import smooth_step
 
@@ -26,28 +28,47 @@ def _rgb(graph, site, output):
 
 
 def _mixed(graph, mode, factor, a, b, clamp_factor, clamp_result):
+    """Return a mix of colours; a and b return theirs when called, so that the colour that is not seen is not read."""
     mode = MixMode.__members__.get(mode)
     if mode is None:
         return None
+    if clamp_factor and not isinstance(factor, NodeRef):
+        factor = clamp(factor)
+    if not clamp_result and cycles_folds.first_of_mix(mode, factor):
+        return a()
+    if not clamp_result and mode == MixMode.MIX and is_constant(factor, 1.0):
+        return b()
+    a, b = a(), b()
+    kept = None if clamp_result else cycles_folds.of_mix(mode, factor, a, b)
+    if kept is not None:
+        return kept
     return graph.emit(NodeKind.MIX, factor, a, b, option=mode, flags=int(clamp_factor) + 2 * int(clamp_result))
 
 
 def _mix_rgb(graph, site, output):
-    factor, a, b = (graph.input(site, socket) for socket in site.node.inputs[:3])
-    return _mixed(graph, site.node.blend_type, factor, a, b, True, site.node.use_clamp)
+    factor, *colors = (functools.partial(graph.input, site, socket) for socket in site.node.inputs[:3])
+    return _mixed(graph, site.node.blend_type, factor(), *colors, True, site.node.use_clamp)
 
 
 def _mix(graph, site, output):
     node = site.node
     if node.data_type == "RGBA":
-        factor, a, b = (graph.value(site, name) for name in ("Factor_Float", "A_Color", "B_Color"))
-        return _mixed(graph, node.blend_type, factor, a, b, node.clamp_factor, node.clamp_result)
+        factor, *colors = (functools.partial(graph.value, site, name) for name in ("Factor_Float", "A_Color", "B_Color"))
+        return _mixed(graph, node.blend_type, factor(), *colors, node.clamp_factor, node.clamp_result)
     if node.data_type not in ("FLOAT", "VECTOR"):
         return None
     suffix = "_Float" if node.data_type == "FLOAT" else "_Vector"
     varied = node.data_type == "VECTOR" and node.factor_mode == "NON_UNIFORM"
     factor = graph.value(site, "Factor_Vector" if varied else "Factor_Float")
+    if node.clamp_factor and not isinstance(factor, NodeRef):
+        factor = each(clamp, factor) if isinstance(factor, tuple) else clamp(factor)
+    if not varied and is_constant(factor, 0.0):
+        return graph.value(site, "A" + suffix)
+    if not varied and is_constant(factor, 1.0):
+        return graph.value(site, "B" + suffix)
     a, b = graph.value(site, "A" + suffix), graph.value(site, "B" + suffix)
+    if not varied and isinstance(a, NodeRef) and a == b:
+        return a
     m, v = MathOperation, VectorOperation
     if node.data_type == "FLOAT":
         factor = graph.op(m.ADD, factor, 0.0, clamped=True) if node.clamp_factor else factor
@@ -63,7 +84,8 @@ def _gamma(graph, site, output):
 
 
 def _invert(graph, site, output):
-    return graph.emit(NodeKind.INVERT, *(graph.input(site, socket) for socket in site.node.inputs[:2]))
+    factor, color = (graph.input(site, socket) for socket in site.node.inputs[:2])
+    return color if is_constant(factor, 0.0) else graph.emit(NodeKind.INVERT, factor, color)
 
 
 def _grey(graph, site, output):

@@ -4,6 +4,7 @@ from mathutils import Euler, Matrix, Vector
 
 from ..bindings.enums import MappingType, MathOperation, NodeKind, VectorOperation
 from ..bindings.shading import NodeRef
+from . import cycles_folds
 from .sockets import EVALUATES_CONSTANTS
 
 _AXES = {"X": (1.0, 0.0, 0.0), "Y": (0.0, 1.0, 0.0), "Z": (0.0, 0.0, 1.0)}
@@ -42,7 +43,10 @@ def _math(graph, site, output):
     if operation is None:
         return None
     values = [graph.input(site, socket) for socket in site.node.inputs]
-    return graph.op(operation, *values, clamped=site.node.use_clamp)
+    kept = cycles_folds.of_math(operation, *values[:2])
+    if kept is None:
+        return graph.op(operation, *values, clamped=site.node.use_clamp)
+    return graph.clamped(kept) if site.node.use_clamp else kept
 
 
 def _vector_math(graph, site, output):
@@ -58,7 +62,10 @@ def _vector_math(graph, site, output):
     if name == "REFRACT":
         return _refract(graph, a, b, scale)
     operation = VectorOperation.__members__.get(name)
-    return None if operation is None else graph.vector_op(operation, a, b, c, scale=scale)
+    if operation is None:
+        return None
+    kept = cycles_folds.of_vector_math(operation, a, b, scale)
+    return graph.vector_op(operation, a, b, c, scale=scale) if kept is None else kept
 
 
 def _refract(graph, incident, normal, eta):

@@ -1,4 +1,4 @@
-"""Nodes of the core, added one by one: equal nodes are shared, and constants are folded.
+"""Nodes of the core, added one by one: equal nodes are shared, constants are folded, and what changes nothing is left out.
 
 The base of graph.NodeGraph, which reads Blender's nodes into them.
 """
@@ -12,6 +12,7 @@ from ..messages.severity import Severity
 from .arithmetic import is_constant, single, triple
 from .colorspace import luminance_weights
 from .fold import FOLDED, fold, gives_number
+from .neutral import neutral
 
 UNKNOWN = {"mid-grey": (0.5, 0.5, 0.5), "white": (1.0, 1.0, 1.0)}
 _OF_THREE = {NodeKind.MIX, NodeKind.VECTOR_MATH, NodeKind.INVERT}
@@ -40,7 +41,10 @@ class NodeBuilder:
         return tuple(self._nodes)
 
     def emit(self, kind, *inputs, option=0, flags=0, name="", image=0, image_count=0, first=0, matrix=None):
-        """Add a node of the core and return its NodeRef, or its value if all inputs are constant and its kind folds."""
+        """Add a node of the core and return its NodeRef.
+
+        Without a node, return its value if all inputs are constant and its kind folds, or what it passes on (neutral.py).
+        """
         # Spread a constant number over all three channels, as the results of nodes are.
         inputs = tuple(map(single, map(in_three, inputs) if kind in _OF_THREE else inputs))
         fields = {} if matrix is None else {"matrix": tuple(float(x) for x in matrix)}
@@ -50,8 +54,12 @@ class NodeBuilder:
         )  # fmt: skip
         if kind in FOLDED and not any(isinstance(value, NodeRef) for value in node.inputs):
             return self._fold(node)
+        passed_on = neutral(node, self._nodes)
+        if passed_on is not None:
+            return passed_on
         numbers = self._scopes[-1].numbers
-        key = (kind, option, flags, name, image, image_count, first, node.inputs, node.matrix)
+        # The text of inputs tells 0 and -0 apart.
+        key = (kind, option, flags, name, image, image_count, first, repr(node.inputs), node.matrix)
         if key not in numbers:
             if len(self._nodes) >= MOST_NODES:
                 text = f"has more than {MOST_NODES} nodes, {self.unknown} is used for the rest"
