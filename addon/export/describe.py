@@ -1,4 +1,4 @@
-"""Lines for a material's panel: the lobes that its nodes become."""
+"""Lines for a material's panels: the lobes that its nodes become, and the nodes that cost time."""
 
 import math
 from dataclasses import dataclass
@@ -8,7 +8,8 @@ from ..bindings.shading import NodeRef
 from ..messages.messages import Messages
 from .arithmetic import is_constant
 from .images import NoPictures
-from .materials import Materials
+from .materials import export_material
+from .node_use import NodeUse, use_of
 from .probe import probe
 
 _NAMES = {
@@ -63,13 +64,14 @@ _PRINCIPLED = (
 class Description:
     lobes: tuple  # of lines: lobes, emission, transmittance, holdout, portals, displacement
     losses: tuple  # of lines: nodes and inputs that are left out or replaced, each once
+    use: NodeUse
 
 
 def describe_material(material):
     messages = Messages()
     # Panels are drawn often: read no images.
-    materials = Materials(messages, images=NoPictures())
-    exported = materials.list[materials.number(material, None)]
+    found = export_material(material, messages, None, NoPictures(), None)
+    exported = found.material
     # The core splits only Principled lobes into several.
     layered = any(lobe.kind == LobeKind.PRINCIPLED for lobe in exported.lobes)
     seen = probe(exported) if layered else None
@@ -83,7 +85,8 @@ def describe_material(material):
     lines += [f"Portal: {_told(portal.weight)}{', elsewhere' if portal.moves else ''}" for portal in exported.portals]
     if not is_constant(exported.displacement, 0.0):
         lines.append("Displacement: textured")
-    return Description(tuple(lines or ["Black"]), tuple(_without_owner(line, material) for line in messages))
+    losses = tuple(_without_owner(line, material) for line in messages)
+    return Description(tuple(lines or ["Black"]), losses, use_of(material.node_tree, found))
 
 
 def _without_owner(line, material):

@@ -75,6 +75,10 @@ class NodeGraph(NodeBuilder):
             self.messages.add(f"{self.owner}: {text}")
         return self._tree.tree
 
+    def title(self, site):
+        """Return a node's name, behind those of the groups around it, with which the user finds it."""
+        return " / ".join(self._name(node) for node in (*site.path, site.node))
+
     def _name(self, node):
         return node.name if self._tree is None else self._tree.name(node)
 
@@ -210,7 +214,8 @@ class NodeGraph(NodeBuilder):
             return None
         self._active.add(key)
         reader = _READERS.get(site.node.type)
-        value = None if reader is None else reader(self, site, output)
+        with self.made_by(self.title(site)):
+            value = None if reader is None else reader(self, site, output)
         self._active.discard(key)
         values[key] = value
         return value

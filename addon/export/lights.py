@@ -9,6 +9,7 @@ import numpy as np
 from ..bindings import snapshot
 from ..bindings.enums import AreaShape, Falloff, LightKind, Ray
 from ..bindings.shading import NodeRef
+from ..measure.parameters import only_read
 from ..messages.severity import Severity
 from .graph import NodeGraph
 from .images import NoPictures
@@ -38,7 +39,7 @@ def export_lamp_nodes(thing, messages, images, depsgraph=None, value=None):
     graph.is_of_lamp, graph.lamp_value = True, value
     emission = emission_of(graph, graph.tree_of(light), "OUTPUT_LIGHT")
     # Nodes of which no output is left cost nothing.
-    nodes = graph.nodes if isinstance(emission, NodeRef) else ()
+    nodes, emission = only_read(graph.nodes, emission)
     return LampNodes(emission, nodes, graph.sources)
 
 

@@ -6,6 +6,7 @@ import bpy
 
 from ..bindings import snapshot
 from ..bindings.enums import LobeKind, MaterialFlag, NodeKind, ObjectFact
+from ..measure.parameters import read_nodes, without_idle_nodes
 from ..messages.severity import Severity
 from .arithmetic import is_constant, triple
 from .course_models import PARAMETERS, lobes_of
@@ -29,8 +30,9 @@ _APART = (ObjectFact.COLOR, ObjectFact.RANDOM)  # values of OBJECT_INFO that the
 _BUMP_WIDTH = 0.1 if bpy.app.version >= (4, 5) else 1.0
 
 
-class _Exported(NamedTuple):
+class Exported(NamedTuple):
     material: snapshot.Material
+    makers: tuple = ()  # of each of its nodes: the name of the user's node that it belongs to, "" without one
     attributes: frozenset = frozenset()  # names of the mesh attributes that it reads
     sources: Sources = Sources()
 
@@ -55,7 +57,7 @@ class Materials:
         key = None if material is None else material.original.as_pointer()
         if key not in self._numbers:
             self._numbers[key] = len(self.list)
-            exported = _Exported(_DEFAULT) if material is None else self._read(material, asker)
+            exported = Exported(_DEFAULT) if material is None else self._read(material, asker)
             self.list.append(exported.material)
             self._attributes.append(exported.attributes)
             self._object_attributes.append(_object_attributes(exported.material))
@@ -63,7 +65,7 @@ class Materials:
 
     def _read(self, material, asker):
         def read(messages, images, value):
-            return _export(material, messages, asker, images, self.depsgraph)
+            return export_material(material, messages, asker, images, self.depsgraph)
 
         return self._shaders.find(material, self.messages, read, asker)
 
@@ -93,8 +95,8 @@ def _object_attributes(material):
     return {node.name for node in material.nodes if (node.kind, node.option) == (NodeKind.OBJECT_INFO, ObjectFact.ATTRIBUTE)}
 
 
-def _export(material, messages, asker, images, depsgraph):
-    """Return an _Exported. asker is the name of the first object with the material, which messages include."""
+def export_material(material, messages, asker, images, depsgraph):
+    """Return the Exported of a material. asker is the name of the first object with the material, which messages include."""
     who = f"material '{material.name}'" + ("" if asker is None else f" on object '{asker}'")
     own = material.lancer
     graph = NodeGraph(who, messages, images, depsgraph)
@@ -106,15 +108,16 @@ def _export(material, messages, asker, images, depsgraph):
         "flags": _flags(material),
     }
     if own.model != "NODES":
-        return _Exported(snapshot.Material(lobes=_own_model(own, who, messages), **common))
+        return Exported(snapshot.Material(lobes=_own_model(own, who, messages), **common))
     if bpy.app.version < (5, 0) and not material.use_nodes:
         color = messages.color(material.diffuse_color, who, "viewport colour")
-        return _Exported(snapshot.Material(lobes=(snapshot.Lobe(LobeKind.LAMBERT, color),), **common))
+        return Exported(snapshot.Material(lobes=(snapshot.Lobe(LobeKind.LAMBERT, color),), **common))
     values = _from_nodes(material, graph)
     common["flags"] |= values.pop("flags", 0)
     common["ambient"] = _color(graph.add(common["ambient"], values.pop("ambient", 0.0)))
     exported = snapshot.Material(nodes=graph.nodes, **values, **common)
-    return _Exported(exported, frozenset(graph.attributes), graph.sources)
+    makers = tuple(graph.makers[number] for number in read_nodes(exported))
+    return Exported(without_idle_nodes(exported), makers, frozenset(graph.attributes), graph.sources)
 
 
 def _flags(material):

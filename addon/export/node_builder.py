@@ -3,6 +3,7 @@
 The base of graph.NodeGraph, which reads Blender's nodes into them.
 """
 
+import contextlib
 import math
 
 from ..bindings import snapshot
@@ -33,12 +34,23 @@ class NodeBuilder:
         self.messages = messages
         self.images = images
         self.unknown = unknown
+        self.maker = ""  # the name of the user's node that is read
+        self.makers = []  # of each node: its maker, the first one of a shared node
         self._nodes = []
         self._scopes = [_Scope()]
 
     @property
     def nodes(self):
         return tuple(self._nodes)
+
+    @contextlib.contextmanager
+    def made_by(self, name):
+        """Attribute the nodes that are added meanwhile to the user's node of that name."""
+        outer, self.maker = self.maker, name
+        try:
+            yield
+        finally:
+            self.maker = outer
 
     def emit(self, kind, *inputs, option=0, flags=0, name="", image=0, image_count=0, first=0, matrix=None):
         """Add a node of the core and return its NodeRef.
@@ -67,6 +79,7 @@ class NodeBuilder:
                 return UNKNOWN[self.unknown]
             numbers[key] = len(self._nodes)
             self._nodes.append(node)
+            self.makers.append(self.maker)
         return NodeRef(numbers[key])
 
     def _fold(self, node):

@@ -70,7 +70,9 @@ class Surface:
             if is_constant(weight, 0.0):
                 continue
             self._share = shares[_key(origin)]
-            for source, part in self._read_one(origin, weight):
+            with self.graph.made_by(self.graph.title(origin.site)):
+                parts = self._read_one(origin, weight)
+            for source, part in parts:
                 if source.site is not None:
                     key = _key(source)
                     weights[key] = self.graph.add(weights.get(key, 0.0), self.graph.multiply(weight, part))

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..bindings import snapshot
 from ..bindings.enums import AlphaMode, Coordinate, Environment, Extension, NodeKind, PathFact
+from ..measure.parameters import only_read
 from ..messages.severity import Severity
 from .graph import NodeGraph
 from .shader_cache import Sources
@@ -40,6 +41,7 @@ def export_world(world, images, depsgraph, messages):
             "feature:bounce limit of a lamp",
         )
     radiance = _cube(own, graph, who, messages) if own.use_cube else _nodes(world, graph, who, messages)
+    nodes, radiance = only_read(graph.nodes, radiance)
     method = getattr(cycles, "sampling_method", "")
     if method == "NONE" and isinstance(radiance, snapshot.NodeRef):
         messages.add(
@@ -49,7 +51,7 @@ def export_world(world, images, depsgraph, messages):
     # An even sky is not sampled as a light in Cycles, and casts shadows in any case.
     elif not getattr(cycles, "use_shadows", True) and isinstance(radiance, snapshot.NodeRef):
         messages.add(f"{who}: a sky that casts no shadows is not supported, it casts them", "feature:sky without shadows")
-    if any(node.kind == NodeKind.LIGHT_PATH and node.option not in _SAME_FOR_SAMPLES for node in graph.nodes):
+    if any(node.kind == NodeKind.LIGHT_PATH and node.option not in _SAME_FOR_SAMPLES for node in nodes):
         messages.add(
             f"{who}: its nodes read Light Path: samples of the sky and rays that meet it find other light, and Cycles weighs "
             "the two by sampling of its own",
@@ -67,7 +69,7 @@ def export_world(world, images, depsgraph, messages):
     sky = snapshot.World(
         radiance=radiance,
         ambient=messages.color(own.ambient_color, who, "ambient colour") if own.use_ambient_color else None,
-        nodes=graph.nodes,
+        nodes=nodes,
         hidden_from=hidden,
         map_resolution=cycles.sample_map_resolution if method == "MANUAL" else 0,
     )

@@ -86,25 +86,42 @@ def parameters(material):
     return found
 
 
-def without_idle_nodes(material):
-    """Return the material without the nodes that no parameter depends on."""
-    if not material.nodes:
-        return material
-    used = set()
-    for _, _, value in parameters(material):
-        used |= sources(material.nodes, value)
-    if len(used) == len(material.nodes):
-        return material
-    order = sorted(used)
+def reached(nodes, values):
+    """Return the numbers of the nodes that any of these parameters depends on, in their order."""
+    return sorted(set().union(*(sources(nodes, value) for value in values)))
+
+
+def kept(nodes, order):
+    """Return the nodes with the numbers in order, and a function that returns a parameter with their new numbers."""
     number_of = {old: new for new, old in enumerate(order)}
 
     def renumbered(value):
         return NodeRef(number_of[value.node]) if isinstance(value, NodeRef) else value
 
-    nodes = []
+    left = []
     for old in order:
-        node = material.nodes[old]
+        node = nodes[old]
         first = number_of[node.first] if node.kind == NodeKind.BUMP else node.first
-        nodes.append(dataclasses.replace(node, inputs=tuple(map(renumbered, node.inputs)), first=first))
+        left.append(dataclasses.replace(node, inputs=tuple(map(renumbered, node.inputs)), first=first))
+    return tuple(left), renumbered
+
+
+def only_read(nodes, value):
+    """Return the nodes that one parameter depends on, and the parameter that refers to them."""
+    left, renumbered = kept(nodes, reached(nodes, [value]))
+    return left, renumbered(value)
+
+
+def read_nodes(material):
+    """Return the numbers of the nodes that a material's parameters depend on, in their order."""
+    return reached(material.nodes, [value for _, _, value in parameters(material)]) if material.nodes else []
+
+
+def without_idle_nodes(material):
+    """Return the material without the nodes that no parameter depends on."""
+    order = read_nodes(material)
+    if len(order) == len(material.nodes):
+        return material
+    nodes, renumbered = kept(material.nodes, order)
     material = map_parameters(material, lambda owner, name, value: renumbered(value))
-    return dataclasses.replace(material, nodes=tuple(nodes))
+    return dataclasses.replace(material, nodes=nodes)

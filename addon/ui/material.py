@@ -2,6 +2,9 @@
 
 import bpy
 
+from .. import engine
+from ..measure import node_lines
+from ..measure.node_speed import slowness
 from .described import described
 from .panel import LancerPanel, nodes_of, setting, uses_classic
 from .sentences import sentence
@@ -64,6 +67,22 @@ class LANCER_MATERIAL_PT_rendered(LancerMaterialPanel, bpy.types.Panel):
             sentence(column, context, line)
 
 
+class LANCER_MATERIAL_PT_costs(LancerMaterialPanel, bpy.types.Panel):
+    bl_label = "What Its Nodes Cost"
+    bl_parent_id = "LANCER_MATERIAL_PT_surface"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and _has_nodes(context.material)
+
+    def draw(self, context):
+        column = self.layout.column(align=True)
+        use = described(context.material, context.scene.frame_current).use
+        for line in node_lines.lines(use, slowness(), engine.last_statistics.get(context.scene.name)):
+            sentence(column, context, line)
+
+
 class LANCER_MATERIAL_PT_displacement(LancerMaterialPanel, bpy.types.Panel):
     bl_label = "Displacement"
 
@@ -96,6 +115,7 @@ class LANCER_MATERIAL_PT_settings(LancerMaterialPanel, bpy.types.Panel):
 CLASSES = (
     LANCER_MATERIAL_PT_surface,
     LANCER_MATERIAL_PT_rendered,
+    LANCER_MATERIAL_PT_costs,
     LANCER_MATERIAL_PT_displacement,
     LANCER_MATERIAL_PT_settings,
 )

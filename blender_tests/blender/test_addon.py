@@ -104,6 +104,8 @@ def test_panels(case):
     assert uses["measured"].count("3 materials use refraction") == 1
     assert "No feature would save 3 % of the time with certainty" in uses["measured, nothing found"]
     assert any("50 %" in text for text in uses["measuring"]) and "lancer.measure_features" not in uses["measuring"]
+    costs = shown["LANCER_MATERIAL_PT_costs"]
+    assert costs["plain"] == ["No node computes a value"]
     sampling = shown["LANCER_RENDER_PT_sampling"]
     assert "lancer.measure_quality" in sampling["plain"] and "lancer.measure_quality" in sampling["measuring"]
     assert sampling["measuring quality"][-2:] == ["Measuring, 25 % (Esc stops)", "Equal samples for all pixels"]

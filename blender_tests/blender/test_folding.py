@@ -2,7 +2,9 @@
 
 import blenders
 import pytest
-from blenders import MODULE
+from blenders import MODULE, PROGRAM
+
+both = pytest.mark.parametrize("which", [MODULE, PROGRAM])
 
 
 @pytest.fixture
@@ -21,3 +23,20 @@ def test_what_cycles_leaves_out_gives_the_same_numbers(case):
     """Powers of and by 1, sums with 0, mixes by 0 and 1 ...: all finite numbers are those of the node that is left out."""
     got = case("as_cycles")
     assert got["rules"] > 60 and got["differ"] == []
+
+
+@both
+def test_of_60_nodes_13_are_left(tmp_path, which):
+    """The picture keeps its bits."""
+    got = blenders.run(which, tmp_path, "fold_cases", "sixty")
+    assert (got["total"], got["left"], got["first"]) == (60, 13, "Voronoi Texture")
+    plain, folded = got["nodes"]
+    assert folded < plain / 2 and got["differ"] == 0 and got["spread"] > 0.05
+
+
+@both
+def test_nodes_of_groups_count_as_often_as_they_are_used(tmp_path, which):
+    """Both uses give the same number: the nodes of the one that is read first are left."""
+    got = blenders.run(which, tmp_path, "fold_cases", "groups")
+    assert (got["total"], got["left"]) == (6, 2)
+    assert set(got["names"]) == {"Use 0 / Checker Texture", "Use 0 / Math"}

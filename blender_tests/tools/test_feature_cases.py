@@ -5,7 +5,9 @@ import pytest
 
 from addon.bindings.enums import Features
 from addon.bindings.session import Session
+from addon.measure.node_costs import nanoseconds
 from tools.features import cases as feature_cases
+from tools.features import nodes as feature_nodes
 from tools.features import page as features_page
 
 CASES = {case.name: case for case in feature_cases.CASES}
@@ -42,6 +44,23 @@ def test_a_feature_is_only_there(name):
     assert more or idle.settings.features == Features.ALL
 
 
+def test_what_the_export_leaves_of_60_nodes_has_their_picture():
+    whole, left = feature_cases.grown(), feature_cases.grown(folded=True)
+    assert [len(material.nodes) for material in (whole, left)] == [60, 7]
+    base = feature_cases.minimal()
+    pictures = [rendered(CASES[name].used(base))[0] for name in CASES if name.startswith("60 nodes")]
+    assert np.array_equal(*pictures)
+
+
+def test_the_material_tab_tells_what_nodes_take():
+    """Within a factor of 2, which processors differ by between kinds of nodes, of a node in common."""
+    names = "noise 3D", "noise 4D", "Voronoi 3D", "Voronoi 3D, smooth", "sine of vectors"
+    found = {name: feature_nodes.measured(feature_nodes.NODES[name], rounds=5)[0] for name in names}
+    for name in names[1:]:
+        told = nanoseconds(feature_nodes.NODES[name]) / nanoseconds(feature_nodes.NODES[names[0]])
+        assert 0.5 < found[name] / found[names[0]] / told < 2.0, (name, found)
+
+
 def test_verdicts():
     def value(cost, uncertainty):
         return {"cost": cost, "uncertainty": uncertainty}
@@ -59,6 +78,7 @@ def test_the_page_holds_every_figure(tmp_path):
         "commit": "abc",
         "goal": 0.02,
         "quick": False,
+        "nodes": {"noise 3D": {"nanoseconds": 51.4, "uncertainty": 2.0, "told": 53.5}},
         "cases": {
             "glass": {"PATH": {**found, "idle": idle}, "CLASSIC": {"idle": {**idle, "note": "not idle"}}},
             "lens": {"PATH": found},
@@ -68,4 +88,4 @@ def test_the_page_holds_every_figure(tmp_path):
     text = (tmp_path / "index.html").read_text()
     assert "+50.0 % ± 1.0" in text and "+3.1 % ± 0.2" in text and "missed" in text and "path &lt;all&gt;" in text
     assert text.count("missed") == 1 and "not idle" in text
-    assert text.count("<tr>") == 3
+    assert text.count("<tr>") == 5 and "51 ns ± 2" in text and "54 ns" in text

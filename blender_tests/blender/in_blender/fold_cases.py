@@ -3,17 +3,23 @@
 import itertools
 import random
 
+import bpy
 import numpy as np
+import stage
+from export_cases import export
+from material_cases import Tree
 
 from addon.bindings.enums import Coordinate, MathOperation, MixMode, NodeKind, VectorOperation
 from addon.bindings.session import Scene
 from addon.bindings.shading import Material, NodeRef
 from addon.bindings.snapshot import SceneSnapshot
 from addon.export import cycles_folds, node_builder
+from addon.export.describe import describe_material
 from addon.messages.messages import Messages
 
 # Constants of which operations often are neutral.
 _CONSTANTS = (0.0, -0.0, 1.0, 1.0, -1.0, 0.5)
+_RULES = ("of_math", "of_vector_math", "first_of_mix", "of_mix")
 _UV = np.concatenate([np.random.default_rng(1).uniform(-2, 2, (40, 2)), [(0, 0), (-0.0, 1), (1, 1), (-1, -0.0)]])
 
 
@@ -141,3 +147,64 @@ def programs(count):
             if (_bits(plain) != _bits(folded)).any():
                 result["differ"].append((seed, number))
     return result
+
+
+def _rendered(scene):
+    """Return the picture and the snapshot of a scene. The export leaves another engine."""
+    scene.render.engine = "LANCER"
+    return stage.picture(scene), export()
+
+
+def sixty():
+    """Return what the panel tells of the material of 60 nodes, and its picture's difference from the one without folding."""
+    import scenes
+
+    scene = scenes.load("sixty_nodes")
+    material = bpy.data.materials["Sixty nodes"]
+    use = describe_material(material).use
+    scene.render.resolution_x, scene.render.resolution_y, scene.lancer.samples = 48, 36, 4
+    picture, folded = _rendered(scene)
+    neutral, rules = node_builder.neutral, [(name, getattr(cycles_folds, name)) for name in _RULES]
+    node_builder.neutral = lambda node, nodes: None
+    for name, _ in rules:
+        setattr(cycles_folds, name, lambda *arguments: None)
+    try:
+        other, plain = _rendered(scene)
+    finally:
+        node_builder.neutral = neutral
+        for name, rule in rules:
+            setattr(cycles_folds, name, rule)
+    number = [m.name for m in folded.materials].index(material.name)
+    return {
+        "total": use.total,
+        "left": use.left,
+        "first": use.costs[0][0],
+        "nodes": [len(snapshot.materials[number].nodes) for snapshot in (plain, folded)],
+        "differ": int((picture != other).sum()),
+        "spread": float(picture[:, :, :3].std()),
+    }
+
+
+def groups():
+    """Return the use of a material whose group has a varying and a constant node, and is used twice."""
+    stage.empty()
+    tree = Tree("grouped")
+    inside = bpy.data.node_groups.new("Inside", "ShaderNodeTree")
+    kept = [inside.nodes.new(f"ShaderNode{kind}") for kind in ("TexChecker", "Math", "Value")]
+    end = inside.nodes.new("NodeGroupOutput")
+    if hasattr(inside, "interface"):
+        inside.interface.new_socket("Result", in_out="OUTPUT", socket_type="NodeSocketFloat")
+    else:
+        inside.outputs.new("NodeSocketFloat", "Result")
+    checker, raised, _ = kept
+    raised.operation = "POWER"
+    inside.links.new(checker.outputs["Fac"], raised.inputs[0])
+    inside.links.new(raised.outputs[0], end.inputs[0])
+    uses = [tree.tree.nodes.new("ShaderNodeGroup") for _ in range(2)]
+    for number, use in enumerate(uses):
+        use.node_tree, use.name = inside, f"Use {number}"
+    diffuse = tree.node("BsdfDiffuse")
+    tree.tree.links.new(uses[1].outputs[0], diffuse.inputs["Color"])
+    tree.tree.links.new(uses[0].outputs[0], diffuse.inputs["Roughness"])
+    found = describe_material(tree.show(diffuse.outputs[0])).use
+    return {"total": found.total, "left": found.left, "names": [name for name, _ in found.costs]}

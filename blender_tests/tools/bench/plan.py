@@ -64,6 +64,8 @@ SCENES = (
     Scene("models", "bunny and spot, textured, under a pictured sky"),
     Scene("textured", "the same with roughness and normals by images", renderers=("lancer", "cycles")),
     Scene("coated", "60 balls: brushed, with sheen, with tinted coat", renderers=("lancer", "cycles")),
+    Scene("sixty_nodes", "60 nodes, of which 13 do not fold", renderers=("lancer", "cycles")),
+    Scene("procedural_floor", "planks by textures without an image", renderers=("lancer", "cycles")),
     Scene("leaves", "a tree of cut-out leaves"),
     Scene("triangle", "one triangle", samples=256, reference=2048),
     # Like artists' files: images in every slot, passes, large lamps, much geometry.

@@ -22,11 +22,14 @@ from addon.bindings.enums import (
     InstanceKind,
     LightKind,
     LobeKind,
+    MathOperation,
+    MixMode,
     NodeKind,
     Pass,
     PixelFilter,
     Ray,
     Shading,
+    VectorOperation,
 )
 from addon.bindings.shading import Image, Lobe, Material, Node, NodeRef, Portal, Principled, World
 from addon.bindings.snapshot import Camera, Instance, InstanceTable, Light, MeshData
@@ -74,7 +77,7 @@ def _on(number, material):
     def change(snapshot):
         materials = list(snapshot.materials)
         materials[number] = dataclasses.replace(material, name=materials[number].name)
-        return dataclasses.replace(snapshot, materials=tuple(materials), images=(_checks(),) if material.nodes else ())
+        return dataclasses.replace(snapshot, materials=tuple(materials), images=(checks(),) if material.nodes else ())
 
     return change
 
@@ -139,7 +142,7 @@ def _sky(name, world, hidden=True):
     everyone = int(Ray.CAMERA | Ray.DIFFUSE | Ray.GLOSSY | Ray.TRANSMISSION)
 
     def change(**fields):
-        return lambda s: dataclasses.replace(s, world=dataclasses.replace(world, **fields), images=(_checks(),))
+        return lambda s: dataclasses.replace(s, world=dataclasses.replace(world, **fields), images=(checks(),))
 
     return Case(name, change(), change(hidden_from=everyone) if hidden else None)
 
@@ -164,7 +167,8 @@ def _copies(snapshot, meshes):
     return dataclasses.replace(snapshot, instances=changed, meshes=(*snapshot.meshes, snapshot.meshes[SQUARE]))
 
 
-def _checks():
+def checks():
+    """Return a picture of squares with rows that are cut out."""
     texels = np.zeros((64, 64, 4), np.uint8)
     texels[...] = np.where((np.indices((64, 64)).sum(axis=0) // 8 % 2)[..., None], (200, 180, 40, 255), (60, 90, 200, 255))
     texels[::3, :, 3] = 0
@@ -211,6 +215,30 @@ def _looking(kind, inputs, parameter, option):
     return _nodes((place, Node(kind, option=option, inputs=inputs)), **{parameter: NodeRef(1)})
 
 
+def grown(folded=False):
+    """Return a material of 60 nodes; folded: of the 7 that the export leaves of them, with the same colour.
+
+    One half repeats the other and is mixed in by 0, and 46 multiply by 1.
+    """
+    nodes = [_UV]
+    for half in range(1 if folded else 2):
+        first = 1 + 6 * half
+        nodes += [
+            Node(NodeKind.NOISE, inputs=(NodeRef(0), (0.0, 5.0, 0.0), (4.0, 0.5, 2.0), (0.0, 1.0, 0.0)), flags=2 | 16),
+            Node(NodeKind.VORONOI, inputs=(NodeRef(0), (0.0, 9.0, 1.0), (0.0, 0.5, 2.0), (1.0, 0.5, 0.0)), flags=1),
+            Node(NodeKind.MATH, inputs=(NodeRef(first), 1.8, -0.4), option=MathOperation.MULTIPLY_ADD, flags=1),
+            Node(NodeKind.MATH, inputs=(NodeRef(first + 1), 0.5, 0.0), option=MathOperation.MINIMUM),
+            Node(NodeKind.MATH, inputs=(1.0, NodeRef(first + 3), 0.0), option=MathOperation.SUBTRACT),
+            Node(NodeKind.VECTOR_MATH, inputs=(NodeRef(first + 2), NodeRef(first + 4)), option=VectorOperation.MULTIPLY),
+        ]
+    if not folded:
+        nodes.append(Node(NodeKind.MIX, inputs=(0.0, NodeRef(6), NodeRef(12)), option=MixMode.MIX))
+        for _ in range(46):
+            last = NodeRef(len(nodes) - 1)
+            nodes.append(Node(NodeKind.VECTOR_MATH, inputs=(last, _WHITE), option=VectorOperation.MULTIPLY))
+    return _nodes(tuple(nodes), color=NodeRef(len(nodes) - 1))
+
+
 _SKY_NODES = (Node(NodeKind.COORDINATE), Node(NodeKind.ENVIRONMENT, inputs=(NodeRef(0),), image_count=1))
 
 CASES = (
@@ -253,6 +281,8 @@ CASES = (
     _surface("colour by ambient occlusion", _looking(NodeKind.OCCLUSION, (1.0,), "color", 16)),
     _surface("normal by a bevel", _looking(NodeKind.BEVEL, (0.05,), "normal", 4)),
     _surface("colour by a raycast", _looking(NodeKind.RAYCAST, (NodeRef(0), (0.0, 0.0, 1.0), 5.0), "color", 0)),
+    _surface("60 nodes that the core evaluates", grown()),
+    _surface("60 nodes, of which the export leaves 7", grown(folded=True)),
     _glowing("glowing mesh", Material(lobes=(), emission=(5, 5, 5))),
     _surface("hole in the picture by material", Material(lobes=(), holdout=1.0)),
     _surface("displacement", Material(displacement=(0.0, 0.0, 0.1), lobes=tiny.lambert(0.7).lobes)),

@@ -1,4 +1,6 @@
-"""`make features`: the cost of each feature where it is used, and where it is only compiled in: build/features/index.html.
+"""`make features`: the cost of each feature where it is used, and where it is only compiled in, and of each kind of node.
+
+It writes build/features/index.html.
 
 Both scenes of a comparison take turns in one process, on one thread, in runs of a twentieth of a second of processor time. Each
 round uploads both scenes anew, so that no layout of memory favours one of them. Figures are medians over the rounds, with the
@@ -15,7 +17,7 @@ from addon.measure.costs import median_with_uncertainty
 from tools.harness.places import BUILD, ROOT, header
 from tools.harness.terminal import Progress, make_parser, wanted
 
-from . import cases, page
+from . import cases, nodes, page
 
 OUTPUT = BUILD / "features"
 # Largest cost of a feature that is only compiled in.
@@ -83,7 +85,7 @@ def main():
     arguments, say = read_arguments(), Progress()
     parts = ",".join(f"*{part}*" for part in arguments.only.split(",") if part)
     chosen = [case for case in cases.CASES if wanted(parts, case.name)]
-    figures = {**header(arguments.quick), "goal": GOAL, "cases": {}}
+    figures = {**header(arguments.quick), "goal": GOAL, "cases": {}, "nodes": {}}
     for integrator in (Integrator.PATH, Integrator.CLASSIC):
         for case in chosen:
             found = measure(case, integrator, arguments.quick)
@@ -92,6 +94,11 @@ def main():
             say(f"{integrator.name:<8} {case.name:<40} {told}")
             # A run takes long: the page has the figures so far.
             page.write(figures, OUTPUT)
+    for name, node in nodes.NODES.items():
+        if wanted(parts, f"node: {name}"):
+            figures["nodes"][name] = found = nodes.measure(node)
+            say(f"node: {name:<42} {page.in_nanoseconds(found)}")
+    page.write(figures, OUTPUT)
     print((OUTPUT / "index.html").relative_to(ROOT))
 
 
