@@ -1,4 +1,4 @@
-"""Lines for a material's panels: the lobes that its nodes become, and the nodes that cost time."""
+"""Lines for a material's panel: the lobes that its nodes become."""
 
 import math
 from dataclasses import dataclass
@@ -8,8 +8,7 @@ from ..bindings.shading import NodeRef
 from ..messages.messages import Messages
 from .arithmetic import is_constant
 from .images import NoPictures
-from .materials import export_material
-from .node_use import NodeUse, use_of
+from .materials import Exported, export_material
 from .probe import probe
 
 _NAMES = {
@@ -64,7 +63,7 @@ _PRINCIPLED = (
 class Description:
     lobes: tuple  # of lines: lobes, emission, transmittance, holdout, portals, displacement
     losses: tuple  # of lines: nodes and inputs that are left out or replaced, each once
-    use: NodeUse
+    exported: Exported
 
 
 def describe_material(material):
@@ -86,7 +85,7 @@ def describe_material(material):
     if not is_constant(exported.displacement, 0.0):
         lines.append("Displacement: textured")
     losses = tuple(_without_owner(line, material) for line in messages)
-    return Description(tuple(lines or ["Black"]), losses, use_of(material.node_tree, found))
+    return Description(tuple(lines or ["Black"]), losses, found)
 
 
 def _without_owner(line, material):

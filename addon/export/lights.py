@@ -8,8 +8,8 @@ import numpy as np
 
 from ..bindings import snapshot
 from ..bindings.enums import AreaShape, Falloff, LightKind, Ray
+from ..bindings.parameters import only_read
 from ..bindings.shading import NodeRef
-from ..measure.parameters import only_read
 from ..messages.severity import Severity
 from .graph import NodeGraph
 from .images import NoPictures

@@ -6,7 +6,7 @@ import bpy
 
 from ..bindings import snapshot
 from ..bindings.enums import LobeKind, MaterialFlag, NodeKind, ObjectFact
-from ..measure.parameters import read_nodes, without_idle_nodes
+from ..bindings.parameters import read_nodes, without_idle_nodes
 from ..messages.severity import Severity
 from .arithmetic import is_constant, triple
 from .course_models import PARAMETERS, lobes_of

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..bindings import snapshot
 from ..bindings.enums import AlphaMode, Coordinate, Environment, Extension, NodeKind, PathFact
-from ..measure.parameters import only_read
+from ..bindings.parameters import only_read
 from ..messages.severity import Severity
 from .graph import NodeGraph
 from .shader_cache import Sources

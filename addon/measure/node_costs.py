@@ -19,8 +19,8 @@ from ..bindings.enums import (
     VoronoiFlag,
     VoronoiMetric,
 )
+from ..bindings.parameters import parameters
 from ..bindings.shading import NodeRef
-from .parameters import parameters
 
 _SIMPLE = 2.0  # a few instructions
 _WAVES = 18.0  # a function by a polynomial, as the sine

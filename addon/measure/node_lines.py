@@ -5,7 +5,7 @@ _LEAST = 0.01  # share that is told as a number
 
 
 def lines(use, slowness, statistics=None):
-    """Return sentences about an export.node_use.NodeUse.
+    """Return sentences about a ui.node_use.NodeUse.
 
     slowness: that of node_speed.py; statistics: those of the last render in engine.last_statistics, or None.
     """

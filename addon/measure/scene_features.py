@@ -13,11 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..bindings.enums import InstanceFlag, InstanceKind, LightKind, Pass
+from ..bindings.parameters import is_zero
 from ..bindings.session import Scene
 from ..bindings.shading import NodeRef
 from ..bindings.snapshot import SceneSnapshot
 from . import simpler_materials, simpler_scene
-from .parameters import is_zero
 
 _MOST_OWNERS = 8  # number of names listed; the count includes all owners
 

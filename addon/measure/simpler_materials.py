@@ -8,8 +8,8 @@ from __future__ import annotations
 import dataclasses
 
 from ..bindings.enums import Distribution, LobeKind, MaterialFlag, NodeKind
+from ..bindings.parameters import is_zero, map_parameters, may_be_positive, parameters, sources, without_idle_nodes
 from ..bindings.shading import Lobe, NodeRef
-from .parameters import is_zero, map_parameters, may_be_positive, parameters, sources, without_idle_nodes
 
 _BLACK = (0.0, 0.0, 0.0)
 _GLASS = {LobeKind.DIELECTRIC, LobeKind.GLASS, LobeKind.REFRACTION}

@@ -4,15 +4,23 @@ Blender redraws a panel many times between two changes. A handler, registered on
 cache after a change.
 """
 
+from typing import NamedTuple
+
 import bpy
 
-from ..export.describe import describe_material
+from ..export.describe import Description, describe_material
+from .node_use import NodeUse, use_of
 
-_kept = {}  # Descriptions by the state that they depend on
+_kept = {}  # Described by the state that they depend on
+
+
+class Described(NamedTuple):
+    description: Description
+    use: NodeUse
 
 
 def described(material, frame):
-    """Return the export.describe.Description of a material at a frame."""
+    """Return the Described of a material at a frame."""
     handlers = bpy.app.handlers.depsgraph_update_post
     if _changed not in handlers:
         # Loading a file removes the handler: entries are of the old file.
@@ -22,7 +30,8 @@ def described(material, frame):
     method = getattr(getattr(material, "cycles", None), "displacement_method", "")
     key = material.as_pointer(), material.name, frame, material.lancer.model, method
     if key not in _kept:
-        _kept[key] = describe_material(material)
+        description = describe_material(material)
+        _kept[key] = Described(description, use_of(material.node_tree, description.exported))
     return _kept[key]
 
 

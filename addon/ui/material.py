@@ -60,7 +60,7 @@ class LANCER_MATERIAL_PT_rendered(LancerMaterialPanel, bpy.types.Panel):
 
     def draw(self, context):
         column = self.layout.column(align=True)
-        found = described(context.material, context.scene.frame_current)
+        found = described(context.material, context.scene.frame_current).description
         for line in found.losses:
             sentence(column, context, line, "ERROR")
         for line in found.lobes:

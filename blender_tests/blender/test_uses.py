@@ -8,11 +8,11 @@ import pytest
 import tiny_scenes as tiny
 
 from addon.bindings.enums import AreaShape, Coordinate, LightKind, LobeKind, NodeKind, Pass, Shading
+from addon.bindings.parameters import without_idle_nodes
 from addon.bindings.session import Session
 from addon.bindings.shading import Image, Lobe, Material, Node, NodeRef, Principled, World
 from addon.bindings.snapshot import Instance, InstanceTable, Light
 from addon.measure import scene_features, simpler_scene
-from addon.measure.parameters import without_idle_nodes
 from addon.measure.scene_features import kernel_in_words, used_features, without
 
 # The add-on's and the core's names of the same feature.

@@ -16,6 +16,7 @@ from addon.bindings.snapshot import SceneSnapshot
 from addon.export import cycles_folds, node_builder
 from addon.export.describe import describe_material
 from addon.messages.messages import Messages
+from addon.ui.node_use import use_of
 
 # Constants of which operations often are neutral.
 _CONSTANTS = (0.0, -0.0, 1.0, 1.0, -1.0, 0.5)
@@ -161,7 +162,7 @@ def sixty():
 
     scene = scenes.load("sixty_nodes")
     material = bpy.data.materials["Sixty nodes"]
-    use = describe_material(material).use
+    use = use_of(material.node_tree, describe_material(material).exported)
     scene.render.resolution_x, scene.render.resolution_y, scene.lancer.samples = 48, 36, 4
     picture, folded = _rendered(scene)
     neutral, rules = node_builder.neutral, [(name, getattr(cycles_folds, name)) for name in _RULES]
@@ -206,5 +207,5 @@ def groups():
     diffuse = tree.node("BsdfDiffuse")
     tree.tree.links.new(uses[1].outputs[0], diffuse.inputs["Color"])
     tree.tree.links.new(uses[0].outputs[0], diffuse.inputs["Roughness"])
-    found = describe_material(tree.show(diffuse.outputs[0])).use
+    found = use_of(tree.tree, describe_material(tree.show(diffuse.outputs[0])).exported)
     return {"total": found.total, "left": found.left, "names": [name for name, _ in found.costs]}

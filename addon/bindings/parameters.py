@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 
-from ..bindings.enums import NodeKind
-from ..bindings.shading import Lobe, Material, NodeRef, Portal, Principled
+from .enums import NodeKind
+from .shading import Lobe, Material, NodeRef, Portal, Principled
 
 _MATERIAL = Material.PARAMETERS
 _LOBE = Lobe.PARAMETERS

@@ -3,8 +3,8 @@
 from collections import Counter
 from dataclasses import dataclass
 
+from ..export.walk import GROUPS
 from ..measure.node_costs import costs_of
-from .walk import GROUPS
 
 # Nodes that carry values and compute none.
 _WIRING = {"FRAME", "REROUTE", "GROUP_INPUT", "GROUP_OUTPUT"}
