@@ -22,17 +22,16 @@ from addon.bindings.enums import (
     InstanceKind,
     LightKind,
     LobeKind,
-    MathOperation,
-    MixMode,
     NodeKind,
     Pass,
     PixelFilter,
     Ray,
     Shading,
-    VectorOperation,
 )
 from addon.bindings.shading import Image, Lobe, Material, Node, NodeRef, Portal, Principled, World
 from addon.bindings.snapshot import Camera, Instance, InstanceTable, Light, MeshData
+
+from .grown import sixty
 
 BALL, FLOOR, SQUARE = range(3)
 SIZE = 96
@@ -216,27 +215,8 @@ def _looking(kind, inputs, parameter, option):
 
 
 def grown(folded=False):
-    """Return a material of 60 nodes; folded: of the 7 that the export leaves of them, with the same colour.
-
-    One half repeats the other and is mixed in by 0, and 46 multiply by 1.
-    """
-    nodes = [_UV]
-    for half in range(1 if folded else 2):
-        first = 1 + 6 * half
-        nodes += [
-            Node(NodeKind.NOISE, inputs=(NodeRef(0), (0.0, 5.0, 0.0), (4.0, 0.5, 2.0), (0.0, 1.0, 0.0)), flags=2 | 16),
-            Node(NodeKind.VORONOI, inputs=(NodeRef(0), (0.0, 9.0, 1.0), (0.0, 0.5, 2.0), (1.0, 0.5, 0.0)), flags=1),
-            Node(NodeKind.MATH, inputs=(NodeRef(first), 1.8, -0.4), option=MathOperation.MULTIPLY_ADD, flags=1),
-            Node(NodeKind.MATH, inputs=(NodeRef(first + 1), 0.5, 0.0), option=MathOperation.MINIMUM),
-            Node(NodeKind.MATH, inputs=(1.0, NodeRef(first + 3), 0.0), option=MathOperation.SUBTRACT),
-            Node(NodeKind.VECTOR_MATH, inputs=(NodeRef(first + 2), NodeRef(first + 4)), option=VectorOperation.MULTIPLY),
-        ]
-    if not folded:
-        nodes.append(Node(NodeKind.MIX, inputs=(0.0, NodeRef(6), NodeRef(12)), option=MixMode.MIX))
-        for _ in range(46):
-            last = NodeRef(len(nodes) - 1)
-            nodes.append(Node(NodeKind.VECTOR_MATH, inputs=(last, _WHITE), option=VectorOperation.MULTIPLY))
-    return _nodes(tuple(nodes), color=NodeRef(len(nodes) - 1))
+    nodes = sixty(folded)
+    return _nodes(nodes, color=NodeRef(len(nodes) - 1))
 
 
 _SKY_NODES = (Node(NodeKind.COORDINATE), Node(NodeKind.ENVIRONMENT, inputs=(NodeRef(0),), image_count=1))

@@ -1,0 +1,74 @@
+// Paths below surfaces: where they enter, and where they leave.
+#include "integrator/path/path.h"
+
+namespace lancer {
+
+namespace {
+
+// Number of walks below surfaces that fill the lanes of the stage.
+constexpr size_t kWorthWalking = 512;
+
+} // namespace
+
+// Sends the path of a lane below the surface.
+void PathIntegrator::enter(uint32_t lane, uint32_t branch) {
+  const ScatterBlock &block = scatter_.next();
+  const Path &path = path_of(lane);
+  Path &next = branch_off(below_, lane, branch);
+  next.enter(get(block.beta, lane));
+  next.length += surface_.distance(lane);
+  film_.set_shares(path, next, block.share, lane);
+  const glm::vec3 outwards = get(surface_.surfaces().ng, lane), ng = get(surface_.lobes().ng, lane);
+  const Hit &hit = surface_.hit(lane);
+  Walk &walk = walks_.emplace_back();
+  walk.method = static_cast<SubsurfaceMethod>(block.below_method[lane]);
+  walk.ray.o = get(surface_.surfaces().p, lane);
+  walk.ray.d = glm::dvec3(get(block.wi, lane));
+  walk.ray.skip_instance = hit.instance;
+  walk.ray.skip_primitive = hit.primitive;
+  walk.n = walk.method == SubsurfaceMethod::Burley ? ng : get(surface_.lobes().ns, lane);
+  walk.inside = glm::dot(outwards, ng) < 0.0f;
+  walk.beta = next.beta;
+  walk.color = get(block.below_color, lane);
+  walk.radius = get(block.below_radius, lane) * float(scene_.normalisation.scale);
+  walk.g = block.below_g[lane];
+  // The numbers of a light sample at this vertex serve the walk.
+  const uint32_t dimension = path.vertex_dimension();
+  walk.u_channel = next.sampler.get1(dimension + kVertexLightChoice);
+  walk.u_distance = next.sampler.get1(dimension + kVertexLight);
+  walk.key = hash_combine(hash_combine(next.sampler.pixel(), next.sampler.sample()), next.vertex_dimension());
+  walk.instance = hit.instance;
+}
+
+// Walks below surfaces, and shades the places where paths leave them. Few walks wait for others, as long as there are paths.
+void PathIntegrator::leave() {
+  if (below_.empty() || (below_.size() < kWorthWalking && !next_.paths.empty()))
+    return;
+  counts_.bounce += walk_->walk(walks_);
+  const size_t first = queue_.paths.size();
+  for (size_t i = 0; i < below_.size(); ++i) {
+    if (!walks_[i].hit.valid())
+      continue;
+    Path &path = queue_.paths.emplace_back(below_[i]);
+    path.beta = walks_[i].beta;
+    queue_.rays.push_back(walks_[i].ray);
+    queue_.from.push_back({});
+    hits_.push_back(walks_[i].hit);
+  }
+  below_.clear();
+  walks_.clear();
+  queues_.begin();
+  for (size_t i = first; i < queue_.paths.size(); ++i)
+    queues_.add(i, hits_[i]);
+  vertices_ += queues_.size();
+  queues_.each([&](std::span<const ShadingQueues::Queued> met) {
+    for (const ShadingQueues::Queued &queued : met) {
+      put_in_lane(queued.number, *queued.material);
+      if (surface_.full())
+        shade_block();
+    }
+    shade_block();
+  });
+}
+
+} // namespace lancer
