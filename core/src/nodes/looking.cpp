@@ -30,12 +30,17 @@ float open_share(NodeRays &rays, const LookingPlace &at, const glm::vec3 &n, dou
                  uint32_t node) {
   const LookingNumbers numbers(at, count, node);
   const Frame frame(n);
+  Ray some[NodeRays::kMost];
   uint32_t open = 0;
-  for (uint32_t i = 0; i < count; ++i) {
-    Ray ray = ray_from(at.surface, glm::dvec3(frame.to_world(warp_cosine_hemisphere(numbers.of(i)))), distance);
-    if (!alone)
-      ray.kinds = RayKind::Shadow;
-    open += uint32_t(!rays.occluded(ray, alone ? at.surface.instance : kNone));
+  for (uint32_t first = 0; first < count; first += NodeRays::kMost) {
+    const uint32_t now = std::min(count - first, NodeRays::kMost);
+    for (uint32_t i = 0; i < now; ++i) {
+      const glm::vec3 way = frame.to_world(warp_cosine_hemisphere(numbers.of(first + i)));
+      some[i] = ray_from(at.surface, glm::dvec3(way), distance);
+      if (!alone)
+        some[i].kinds = RayKind::Shadow;
+    }
+    open += rays.open({some, now}, alone ? at.surface.instance : kNone);
   }
   return float(open) / float(count);
 }

@@ -14,7 +14,9 @@ namespace lancer {
 class NodeRays {
 public:
   virtual ~NodeRays() = default;
-  virtual bool occluded(const Ray &ray, uint32_t instance) = 0;
+  static constexpr uint32_t kMost = 16; // rays of one call
+  // Returns how many rays meet nothing.
+  virtual uint32_t open(std::span<const Ray> rays, uint32_t instance) = 0;
   virtual Hit closest(const Ray &ray, uint32_t instance) = 0;
   // Returns the hits with an instance, each primitive once, valid until the next call.
   virtual std::span<const Hit> all(const Ray &ray, uint32_t instance) = 0;

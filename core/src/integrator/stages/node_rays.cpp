@@ -11,15 +11,15 @@ SceneNodeRays::SceneNodeRays(const Scene &scene)
   instances = asked_.data();
 }
 
-bool SceneNodeRays::occluded(const Ray &ray, uint32_t instance) {
-  uint8_t occluded = 0;
-  if (instance == kNone) {
-    scene_.accelerator->any_hit({&ray, 1}, {&occluded, 1});
-    return occluded != 0;
-  }
+uint32_t SceneNodeRays::open(std::span<const Ray> rays, uint32_t instance) {
+  uint8_t occluded[kMost] = {};
+  const std::span<uint8_t> answers(occluded, rays.size());
   instance_ = instance;
-  alone_.any_hit({&ray, 1}, {&occluded, 1}, *this);
-  return occluded != 0;
+  if (instance == kNone)
+    scene_.accelerator->any_hit(rays, answers);
+  else
+    alone_.any_hit(rays, answers, *this);
+  return uint32_t(std::ranges::count(answers, 0));
 }
 
 Hit SceneNodeRays::closest(const Ray &ray, uint32_t instance) {

@@ -13,7 +13,7 @@ class SceneNodeRays final : public NodeRays, HitFilter {
 public:
   explicit SceneNodeRays(const Scene &scene);
 
-  bool occluded(const Ray &ray, uint32_t instance) override;
+  uint32_t open(std::span<const Ray> rays, uint32_t instance) override;
   Hit closest(const Ray &ray, uint32_t instance) override;
   std::span<const Hit> all(const Ray &ray, uint32_t instance) override;
   Surface surface(const Ray &ray, const Hit &hit) const override;
