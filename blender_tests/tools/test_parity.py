@@ -220,7 +220,7 @@ _KINDS = ("point", "spot", "sun", "area")
 _SINCE_45 = {"temperature_warm", "attribute_of_instance"} | {
     f"light_{name}_{kind}" for name in ("exposure", "normalize_off", "temperature") for kind in _KINDS
 }
-_RAYCASTS = {f"raycast_{name}" for name in ("distance", "normal", "beside", "local", "in_diffuse")}
+_RAYCASTS = {"raycast_in_diffuse"} | {f"raycast_value_{name}" for name in ("distance", "normal", "beside", "local")}
 _SINCE_52 = {"constants_and_joined_bundles", "principled_wall_glass_smooth"} | _RAYCASTS
 _NOON = {"sky_single_scattering_noon", "sky_multiple_scattering_noon"}
 _SINCE_50 = _SINCE_52 | _NOON | {"repeat_zones", "closure_zones", "bundles", "menus_and_groups"}

@@ -264,14 +264,14 @@ def _beside(nodes):
     since=_SINCE,
     bounces=0,
 )
-def raycast(scene, value):
+def raycast_value(scene, value):
     _still_life(scene, _glow(value))
     sky(scene)
 
 
-@case(since=_SINCE, quick=True)
-def raycast_in_diffuse(scene):
-    """A mirror made of a ray, whose hit normal colours diffuse surfaces; one object is hidden from such rays."""
+@variants(values={"in_diffuse": (True, {"quick": True}), "past_hidden": False}, since=_SINCE)
+def raycast(scene, is_visible):
+    """A mirror made of a ray, whose hit normal colours diffuse surfaces; one object may be hidden from such rays."""
 
     def surface(nodes):
         color = nodes.add(
@@ -284,7 +284,7 @@ def raycast_in_diffuse(scene):
         return nodes.add("ShaderNodeBsdfDiffuse", Color=color)
 
     _still_life(scene, material(surface))
-    bpy.data.objects["Copy"].visible_raycast = False
+    bpy.data.objects["Copy"].visible_raycast = is_visible
     lamp(scene)
     sky(scene)
 
