@@ -5,7 +5,7 @@ Generated from core/include/lancer.h by `make bindings`; changes here are lost.
 
 from enum import IntEnum, IntFlag
 
-ABI_VERSION = 11
+ABI_VERSION = 12
 MOST_NODE_RAYS = 128
 MOST_NODES = 4096
 DEEPEST_RECURSION = 16
@@ -120,6 +120,13 @@ class AlphaMode(IntEnum):
     STRAIGHT = 1
     CHANNEL_PACKED = 2
     NONE = 3
+
+
+class Layout(IntEnum):
+    """Order of texels."""
+
+    ROWS = 0
+    BLOCKS = 1
 
 
 class NodeKind(IntEnum):

@@ -71,9 +71,9 @@ class Image(Structure):
         ("transfer", c_uint32),
         ("alpha", c_uint32),
         ("tile", c_uint32),
-        ("reserved", c_uint32),
+        ("layout", c_uint32),
         ("matrix", c_float * 9),
-        ("reserved2", c_uint32),
+        ("gaps", c_uint32),
     ]
 
 
@@ -334,6 +334,7 @@ class Statistics(Structure):
         ("kernel", c_char * 64),
         ("instruction_set", c_char * 32),
         ("texture_bytes", c_uint64),
+        ("mapped_bytes", c_uint64),
         ("vertices", c_uint64),
         ("split_lights", c_uint32),
         ("split_paths", c_uint32),

@@ -32,7 +32,7 @@ extern "C" {
 #endif
 
 /* Incremented with each change of a struct or a call of this header. */
-#define LANCER_ABI_VERSION 11u
+#define LANCER_ABI_VERSION 12u
 
 /* Limits: nodes of a material or world; recursion of CLASSIC, in which glass doubles the rays with every depth. */
 #define LANCER_MOST_NODE_RAYS 128u /* of an OCCLUSION or a BEVEL */
@@ -193,18 +193,25 @@ enum lancer_alpha_mode {
   LANCER_ALPHA_NONE = 3
 };
 
+/* Order of texels. ROWS: [height][width][channels], row 0 at the bottom; the library copies them. BLOCKS: squares of 64 x 64
+ * texels, row by row of squares, each [64][64][channels]; squares at the right and the top edge are whole, and their texels
+ * beyond the image are not read. The library reads blocks in place: they begin at a multiple of 64 bytes, 3 readable bytes
+ * follow the last, and they do not change until the scene and all sessions made from it are destroyed. Colour is already
+ * multiplied by alpha: alpha is not STRAIGHT with four channels. Images are blocks; tables of numbers are rows. */
+enum lancer_layout { LANCER_LAYOUT_ROWS = 0, LANCER_LAYOUT_BLOCKS = 1 };
+
 typedef struct lancer_image {
   const char *name;
-  const void *texels; /* [height][width][channels] of kind, row 0 at the bottom; integers map to 0 ... 1 */
+  const void *texels; /* in the order of layout, of kind; integers map to 0 ... 1 */
   uint32_t width, height;
   uint32_t channels; /* 1 (grey), 3 or 4 */
   uint32_t kind;     /* LANCER_TEXEL_* */
   uint32_t transfer; /* LANCER_TRANSFER_* */
   uint32_t alpha;    /* LANCER_ALPHA_* */
   uint32_t tile;     /* UDIM number, 1001 ...; 0 if the image is not a tile */
-  uint32_t reserved;
-  float matrix[9]; /* row-major: decoded RGB to the scene's working space */
-  uint32_t reserved2;
+  uint32_t layout;   /* LANCER_LAYOUT_* */
+  float matrix[9];   /* row-major: decoded RGB to the scene's working space */
+  uint32_t gaps;     /* BLOCKS: number of texels that are not finite; the library counts those of ROWS */
 } lancer_image;
 
 /* ---- nodes ------------------------------------------------------------------------------------------------------ */
@@ -1017,7 +1024,8 @@ typedef struct lancer_statistics {
   char features[512];                 /* features of the scene, separated by blanks */
   char kernel[64];                    /* the integrator that ran */
   char instruction_set[32];           /* e.g. "AVX2" */
-  uint64_t texture_bytes;             /* images; geometry_bytes covers meshes, instances and lights */
+  uint64_t texture_bytes;             /* copied images; geometry_bytes covers meshes, instances and lights */
+  uint64_t mapped_bytes;              /* images that the library reads in place */
   uint64_t vertices;                  /* of rays on surfaces, without layers that a cut-out removes */
   uint32_t split_lights, split_paths; /* the numbers in use; 0 until they are found */
 } lancer_statistics;

@@ -194,6 +194,7 @@ lancer_status lancer_session_statistics(lancer_session session, lancer_statistic
     statistics->geometry_bytes = scene.geometry_bytes();
     statistics->accelerator_bytes = scene.accelerator->bytes();
     statistics->texture_bytes = scene.texture_bytes();
+    statistics->mapped_bytes = scene.mapped_bytes();
     const bool lens = object->session.camera().lens_radius > 0.0;
     copy_text(statistics->features, sizeof statistics->features,
               feature_names({scene.features, scene.shapes}) + (lens ? " lens" : ""));

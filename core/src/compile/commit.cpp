@@ -182,7 +182,14 @@ size_t Scene::geometry_bytes() const {
 size_t Scene::texture_bytes() const {
   size_t bytes = 0;
   for (const Image &image : images)
-    bytes += image.bytes();
+    bytes += image.blocks ? 0 : image.bytes();
+  return bytes;
+}
+
+size_t Scene::mapped_bytes() const {
+  size_t bytes = 0;
+  for (const Image &image : images)
+    bytes += image.blocks ? image.bytes() : 0;
   return bytes;
 }
 

@@ -36,7 +36,8 @@ struct Scene {
   // Returns the number that the user gave a primitive.
   uint32_t face_number(uint32_t instance, uint32_t primitive) const;
   size_t geometry_bytes() const; // with lights, without images
-  size_t texture_bytes() const;
+  size_t texture_bytes() const;  // copied images
+  size_t mapped_bytes() const;   // images that are read in place
 };
 
 // Turns a description into a scene. Throws Error, or BuildCancelled when context.cancel is raised.

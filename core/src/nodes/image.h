@@ -20,18 +20,19 @@ struct ImageView {
   uint32_t texel_bytes = 0; // per channel: 1, 2, or 4 for floats
   Extension extension = Extension::Repeat;
   Interpolation interpolation = Interpolation::Linear;
-  bool curve = false;       // texels are in sRGB; else linear
-  bool large = false;       // offsets exceed 32 bits
-  bool straight = false;    // divide the colour by alpha
-  bool keeps_alpha = false; // alpha is the fourth channel; else 1
-  bool has_gaps = false;    // some texels are not finite
+  bool curve = false;         // texels are in sRGB; else linear
+  bool large = false;         // offsets exceed 32 bits
+  bool straight = false;      // divide the colour by alpha
+  bool keeps_alpha = false;   // alpha is the fourth channel; else 1
+  bool has_gaps = false;      // some texels are not finite
+  uint32_t blocks_across = 0; // 0: texels are rows
 };
 
 // Returns the view of nodes with these flags. Valid as long as the image is neither changed nor moved.
 LANCER_LANE ImageView image_view(const Image &image, uint32_t flags) {
   const bool multiplied = image.alpha == AlphaMode::Associated || image.alpha == AlphaMode::Straight;
   ImageView r;
-  r.texels = image.texels.get();
+  r.texels = image.data();
   r.matrix = image.has_matrix ? &image.matrix : nullptr;
   r.width = image.width;
   r.height = image.height;
@@ -40,9 +41,10 @@ LANCER_LANE ImageView image_view(const Image &image, uint32_t flags) {
   r.extension = static_cast<Extension>(flags & 0xf);
   r.interpolation = static_cast<Interpolation>(flags >> 4 & 0xf);
   r.curve = image.transfer == Transfer::Srgb;
-  r.large = static_cast<uint64_t>(image.width) * image.height * image.channels * r.texel_bytes >= uint64_t(1) << 31;
+  r.large = image.bytes() >= uint64_t(1) << 31;
   r.keeps_alpha = image.channels == 4 && image.alpha != AlphaMode::None;
   r.has_gaps = image.has_gaps;
+  r.blocks_across = image.blocks ? image.blocks_across() : 0;
   r.straight = (flags & 256) && multiplied && image.channels > 1;
   return r;
 }

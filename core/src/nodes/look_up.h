@@ -114,6 +114,15 @@ template <class F> LANCER_LANE Alpha<F> select(const MaskOf<F> &m, const Alpha<F
   return {select(m, a.alpha, b.alpha)};
 }
 
+// Returns the number of a texel in memory, at which no result depends on the order of texels.
+template <class N> LANCER_LANE N texel_number(const ImageView &image, const N &column, const N &row) {
+  if (!image.blocks_across)
+    return row * N(image.width) + column;
+  const N last((1u << kBlockShift) - 1u);
+  const N block = (row >> kBlockShift) * N(image.blocks_across) + (column >> kBlockShift);
+  return block << 2 * kBlockShift | (row & last) << kBlockShift | (column & last);
+}
+
 // Returns the words at this byte offset into a texel.
 template <uint32_t Bytes, class F>
 LANCER_LANE WordOf<F> words_at(const ImageView &image, const F &x, const F &y, uint32_t into) {
@@ -122,9 +131,9 @@ LANCER_LANE WordOf<F> words_at(const ImageView &image, const F &x, const F &y, u
   const uint32_t texel = image.channels * Bytes;
   if constexpr (LanesOf<F>::kWidth > 1)
     if (!image.large)
-      return gather_bytes(image.texels, (row * U(image.width) + column) * U(texel) + U(into));
+      return gather_bytes(image.texels, texel_number(image, column, row) * U(texel) + U(into));
   return by_lane<U>([&](int i) __attribute__((always_inline)) {
-    const uint64_t number = static_cast<uint64_t>(lane(row, i)) * image.width + lane(column, i);
+    const uint64_t number = texel_number<uint64_t>(image, lane(column, i), lane(row, i));
     return gather_bytes(image.texels + number * texel, into);
   });
 }

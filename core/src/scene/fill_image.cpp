@@ -1,4 +1,5 @@
-// Checks and copies images. Colours with straight alpha are multiplied by alpha here, once, in the stored bit depth.
+// Checks images and copies those of rows. Their colours with straight alpha are multiplied by alpha here, once, in the stored
+// bit depth.
 #include "scene/description.h"
 #include "scene/fill.h"
 #include "scene/messages.h"
@@ -13,6 +14,8 @@ namespace {
 
 // The largest side; within it, the size in bytes fits 64 bits.
 constexpr uint32_t kLargestSide = 1u << 20;
+
+constexpr uintptr_t kBlockAlignment = 64;
 
 uint8_t multiplied(uint8_t color, uint8_t alpha) { return uint8_t(uint32_t(color) * alpha / 255u); }
 uint16_t multiplied(uint16_t color, uint16_t alpha) { return uint16_t(uint32_t(color) * alpha / 65535u); }
@@ -58,9 +61,28 @@ void check_image(const std::string &object, const lancer_image &source) {
     refuse("alpha", source.alpha, "one of 0 ... 3");
   if (!source.texels)
     bad_argument(object + ": texels is NULL");
+  if (source.layout > LANCER_LAYOUT_BLOCKS)
+    refuse("layout", source.layout, "one of 0, 1");
+  if (source.layout == LANCER_LAYOUT_BLOCKS) {
+    if (const auto address = reinterpret_cast<uintptr_t>(source.texels); address % kBlockAlignment)
+      refuse("address of the blocks", address, "a multiple of 64");
+    if (source.alpha == LANCER_ALPHA_STRAIGHT && source.channels == 4)
+      bad_argument(object + ": blocks have straight alpha, but are read in place: multiply their colour by alpha");
+  }
   for (int i = 0; i < 9; ++i)
     if (!std::isfinite(source.matrix[i]))
       bad_argument(object + ": matrix contains " + to_text(source.matrix[i]));
+}
+
+void copy_rows(const std::string &object, const void *rows, Image &image) {
+  const std::string texels = object + ": " + std::to_string(image.width) + " x " + std::to_string(image.height) + " texels";
+  check_memory(texels, double(image.bytes()));
+  try {
+    image.texels = allocate_texels(image.bytes());
+  } catch (const std::bad_alloc &) {
+    throw Error(Fault::Memory, texels + " need " + std::to_string(image.bytes() / 1000000) + " MB, more than is free");
+  }
+  std::memcpy(image.texels.get(), rows, image.bytes());
 }
 
 } // namespace
@@ -81,19 +103,16 @@ void add_image(Description &description, const lancer_image &source) {
     for (int column = 0; column < 3; ++column)
       image.matrix[column][row] = source.matrix[3 * row + column];
   image.has_matrix = image.matrix != glm::mat3(1.0f);
-  const std::string texels = object + ": " + std::to_string(image.width) + " x " + std::to_string(image.height) + " texels";
-  check_memory(texels, double(image.bytes()));
-  try {
-    image.texels = allocate_texels(image.bytes());
-  } catch (const std::bad_alloc &) {
-    throw Error(Fault::Memory, texels + " need " + std::to_string(image.bytes() / 1000000) + " MB, more than is free");
-  }
-  std::memcpy(image.texels.get(), source.texels, image.bytes());
-  if (const size_t gaps = image.kind == TexelKind::Float ? count_gaps(image) : 0) {
+  const bool is_copied = source.layout == LANCER_LAYOUT_ROWS;
+  if (is_copied)
+    copy_rows(object, source.texels, image);
+  else
+    image.blocks = static_cast<const std::byte *>(source.texels);
+  if (const size_t gaps = image.kind != TexelKind::Float ? 0 : is_copied ? count_gaps(image) : source.gaps) {
     image.has_gaps = true;
     description.messages.add(object, std::to_string(gaps) + " texels are not finite, look-ups that read one give black");
   }
-  if (image.alpha == AlphaMode::Straight && image.channels == 4) {
+  if (is_copied && image.alpha == AlphaMode::Straight && image.channels == 4) {
     if (image.kind == TexelKind::U8)
       associate<uint8_t>(image);
     else if (image.kind == TexelKind::U16)

@@ -229,6 +229,9 @@ private:
     if (given.image >= description_.images.size())
       bad_argument(where_ + "image " + std::to_string(given.image) + " >= " + std::to_string(description_.images.size()) +
                    " images");
+    if (description_.images[given.image].blocks)
+      bad_argument(where_ + label("image", description_.images[given.image].name.c_str(), given.image) +
+                   " is a table, but its texels are blocks");
     node.image = given.image;
     node.image_count = 1;
     return description_.images[given.image];

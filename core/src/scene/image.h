@@ -2,6 +2,7 @@
 #pragma once
 
 #include "simd/huge_pages.h"
+#include "simd/scalar.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -36,6 +37,11 @@ enum class AlphaMode : uint32_t { Associated = 0, Straight = 1, ChannelPacked = 
 enum class Extension : uint32_t { Repeat = 0, Extend = 1, Clip = 2, Mirror = 3 };
 enum class Interpolation : uint32_t { Linear = 0, Closest = 1, Cubic = 2 };
 
+// The side of a block of texels is two to this power. A block fills whole pages of memory, and neighbours in both directions
+// are mostly on one page.
+inline constexpr int kBlockShift = 6;
+LANCER_LANE uint32_t blocks_along(uint32_t side) { return ((side - 1) >> kBlockShift) + 1; }
+
 struct Image {
   std::string name;
   uint32_t width = 0, height = 0, channels = 4;
@@ -44,13 +50,18 @@ struct Image {
   AlphaMode alpha = AlphaMode::Straight;
   uint32_t tile = 0; // UDIM; 0 = none
   bool has_matrix = false;
-  bool has_gaps = false;  // texels that are not finite
-  glm::mat3 matrix{1.0f}; // decoded RGB to the working space
-  Texels texels;          // [height][width][channels]
+  bool has_gaps = false;             // texels that are not finite
+  glm::mat3 matrix{1.0f};            // decoded RGB to the working space
+  Texels texels;                     // [height][width][channels]; null: the texels are blocks
+  const std::byte *blocks = nullptr; // the caller's, in the order of LANCER_LAYOUT_BLOCKS
 
-  size_t bytes() const {
-    const size_t texel_bytes = kind == TexelKind::U8 ? 1 : kind == TexelKind::U16 ? 2 : 4;
-    return size_t(width) * height * channels * texel_bytes;
+  LANCER_LANE const std::byte *data() const { return blocks ? blocks : texels.get(); }
+  LANCER_LANE uint32_t blocks_across() const { return blocks_along(width); }
+
+  LANCER_LANE size_t bytes() const {
+    const size_t texel = channels * (kind == TexelKind::U8 ? 1 : kind == TexelKind::U16 ? 2 : 4);
+    return blocks ? (size_t(blocks_along(width)) * blocks_along(height) << 2 * kBlockShift) * texel
+                  : size_t(width) * height * texel;
   }
 };
 

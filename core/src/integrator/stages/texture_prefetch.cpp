@@ -29,7 +29,8 @@ TexturePrefetch::Source TexturePrefetch::find(const Scene &scene, const Material
       continue;
     const Node &source = nodes[size_t(node.inputs[0].node)];
     const Image &image = scene.images[node.image];
-    if (source.kind == NodeKind::Coordinate && source.option == Coordinate::Uv && image.bytes() >= kLarge)
+    // A prefetch brings no page of a file into memory.
+    if (source.kind == NodeKind::Coordinate && source.option == Coordinate::Uv && image.bytes() >= kLarge && !image.blocks)
       return {&image, source.name, static_cast<Extension>(node.flags & 0xf)};
   }
   return {};
