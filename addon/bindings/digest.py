@@ -5,6 +5,8 @@ import hashlib
 
 import numpy as np
 
+from .blocks import Blocks
+
 _PARTS = ("meshes", "instances", "materials", "lights", "images", "world")
 
 
@@ -18,6 +20,8 @@ def scene_digest(snapshot):
 
 def _add(digest, value):
     """Add a value with its kind and length, so that no two values give the same bytes."""
+    if isinstance(value, Blocks):
+        value = np.asarray(value)
     if isinstance(value, np.ndarray):
         data = np.ascontiguousarray(value, value.dtype.newbyteorder("<"))
         digest.update(f"array {data.dtype.str} {data.shape};".encode())

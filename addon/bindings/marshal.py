@@ -1,6 +1,7 @@
 """Conversion of the records of snapshot.py to the structs of lancer.h.
 
-A struct holds addresses of the record's arrays, so the record must outlive the call; the library copies the arrays.
+A struct holds addresses of the record's arrays, so the record must outlive the call; the library copies the arrays. It does not
+copy Blocks, which must outlive the scene.
 """
 
 import ctypes
@@ -9,6 +10,7 @@ import functools
 import numpy as np
 
 from . import abi
+from .blocks import Blocks
 from .shading import NodeRef
 
 INSTANCE = np.dtype(abi.Instance)
@@ -111,6 +113,7 @@ def object_attribute(attribute):
     return _text(attribute.name), len(attribute.values), _address(attribute.values)
 
 
+_MOST_GAPS = 2**32 - 1
 _TEXELS = {
     np.dtype(np.uint8): abi.TexelKind.U8,
     np.dtype(np.uint16): abi.TexelKind.U16,
@@ -120,7 +123,10 @@ _TEXELS = {
 
 def image(i):
     height, width, channels = i.texels.shape
-    return _struct(abi.Image, i, width=width, height=height, channels=channels, kind=_TEXELS[i.texels.dtype])
+    given = {"texels": _address(i.texels), "layout": abi.Layout.ROWS, "gaps": 0}
+    if isinstance(i.texels, Blocks):
+        given = {"texels": _address(i.texels.array), "layout": abi.Layout.BLOCKS, "gaps": min(i.texels.gaps, _MOST_GAPS)}
+    return _struct(abi.Image, i, width=width, height=height, channels=channels, kind=_TEXELS[i.texels.dtype], **given)
 
 
 def node(n):

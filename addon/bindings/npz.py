@@ -14,6 +14,8 @@ import typing
 
 import numpy as np
 
+from .blocks import Blocks
+
 _TYPES = {}
 _TREE = "tree"
 # The library's integers have 32 bits; ctypes would truncate larger ones.
@@ -35,7 +37,8 @@ def save_npz(record, path):
     arrays = {}
 
     def encode(value):
-        if isinstance(value, np.ndarray):
+        # numpy makes rows of blocks when it writes them, an image at a time.
+        if isinstance(value, (np.ndarray, Blocks)):
             key = f"array_{len(arrays)}"
             arrays[key] = value
             return {"array": key}

@@ -5,6 +5,8 @@ import math
 
 import numpy as np
 
+from .blocks import Blocks
+
 
 def array(value, dtype, shape, what):
     """Return value as a read-only C-contiguous array; raise ValueError for another shape. None in shape is any length."""
@@ -18,6 +20,7 @@ def array(value, dtype, shape, what):
 def same(a, b):
     if a is b:
         return True
+    a, b = (np.asarray(value) if isinstance(value, Blocks) else value for value in (a, b))
     if isinstance(a, np.ndarray) or isinstance(b, np.ndarray):
         if not (isinstance(a, np.ndarray) and isinstance(b, np.ndarray)):
             return False

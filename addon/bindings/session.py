@@ -17,6 +17,8 @@ import numpy as np
 
 from . import abi, marshal
 from .abi import LancerError, Pass, Status, check, load_library
+from .blocks import Blocks
+from .mapped_file import MappedPages
 from .parts import SessionParts
 from .probes import SceneProbes, SessionProbes, microfacet, pixel_filter, sampler
 from .snapshot import InstanceTable
@@ -74,6 +76,7 @@ class Statistics:
     kernel: str
     instruction_set: str
     texture_bytes: int
+    mapped_bytes: int
     vertices: int
     split_lights: int
     split_paths: int
@@ -111,13 +114,19 @@ class PictureError:
         return self.high + self.cannot_exclude
 
 
+def _destroy(destroy, handle, _pages):
+    destroy(handle)
+
+
 class _Handle:
     """Owner of a handle. close() may be called repeatedly; garbage collection closes the handle too."""
 
-    def _own(self, library, destroy, handle):
+    def _own(self, library, destroy, handle, pages):
+        """pages: the MappedPages that the library reads as long as it has the handle; None without a scene."""
         self.library = library
         self.handle = handle
-        self._finalizer = weakref.finalize(self, destroy, handle)
+        self.pages = pages
+        self._finalizer = weakref.finalize(self, _destroy, destroy, handle, pages)
 
     def close(self):
         self._finalizer()
@@ -139,7 +148,7 @@ class Scene(_Handle, SceneProbes):
         library = library or load_library()
         handle = ctypes.c_uint64()
         check(library.lancer_scene_create(ctypes.byref(handle)), library)
-        self._own(library, library.lancer_scene_destroy, handle.value)
+        self._own(library, library.lancer_scene_destroy, handle.value, MappedPages())
 
     @classmethod
     def upload(cls, snapshot, library=None, poll=None, release=False):
@@ -154,7 +163,10 @@ class Scene(_Handle, SceneProbes):
         return scene
 
     def fill(self, snapshot, poll=None, release=False):
-        """Copy the snapshot into the library. release: remove each part from the snapshot when copied, to save memory."""
+        """Copy the snapshot into the library, which reads Blocks in place.
+
+        release: remove each part from the snapshot when copied, to save memory.
+        """
         for _ in self.filling(snapshot, release):
             _obey(poll)
 
@@ -174,6 +186,8 @@ class Scene(_Handle, SceneProbes):
             while records:
                 # The struct holds addresses of the record's arrays: keep the record until the call returns.
                 record = records.pop()
+                if name == "images" and isinstance(record.texels, Blocks):
+                    self.pages.add(record.texels.file)
                 self._check(add(handle, ctypes.byref(to_struct(record))))
                 yield
             record = None
@@ -210,7 +224,9 @@ class Scene(_Handle, SceneProbes):
 
     def is_committed(self, seconds=0.0):
         """Wait at most that long and return whether the commit has ended; raise LancerError if it failed."""
-        return self._check(self.library.lancer_scene_wait(self.handle, int(seconds * 1000))) is not Status.RUNNING
+        status = self._check(self.library.lancer_scene_wait(self.handle, int(seconds * 1000)))
+        self.pages.keep_under()
+        return status is not Status.RUNNING
 
     def messages(self):
         """Return one line for each part of the scene that the library left out or replaced."""
@@ -232,7 +248,7 @@ class Session(_Handle, SessionParts, SessionProbes):
         handle = ctypes.c_uint64()
         arguments = ctypes.byref(marshal.camera(camera)), ctypes.byref(marshal.settings(settings))
         check(create(identity, *arguments, ctypes.byref(handle)), library)
-        self._own(library, library.lancer_session_destroy, handle.value)
+        self._own(library, library.lancer_session_destroy, handle.value, None if scene is None else scene.pages)
         self.scene = scene
         self.camera = camera
         self.settings = settings
@@ -272,6 +288,8 @@ class Session(_Handle, SessionParts, SessionProbes):
         progress = abi.Progress()
         milliseconds = max(0, round(seconds * 1000))
         status = self._check(self.library.lancer_session_wait(self.handle, milliseconds, ctypes.byref(progress)))
+        if self.pages is not None:
+            self.pages.keep_under()
         return Progress(
             progress.fraction,
             progress.seconds,

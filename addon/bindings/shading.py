@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from . import structs
+from .blocks import Blocks
 from .enums import AlphaMode, Distribution, LobeKind, NodeKind, Rules, Transfer
 from .npz import register
 from .record import Record, array
@@ -50,23 +51,25 @@ class Parameters(Record):
 @register
 @dataclass(frozen=True, eq=False)
 class Image(Record):
-    """texels: (height, width, channels) of uint8, uint16 or float32, row 0 at the bottom; 1, 3 or 4 channels."""
+    """texels: (height, width, channels) of uint8, uint16 or float32, row 0 at the bottom; 1, 3 or 4 channels. Or Blocks."""
 
     name: str = ""
-    texels: np.ndarray = field(default_factory=lambda: np.zeros((1, 1, 4), np.uint8))
+    texels: np.ndarray | Blocks = field(default_factory=lambda: np.zeros((1, 1, 4), np.uint8))
     transfer: int = Transfer.LINEAR
     alpha: int = AlphaMode.STRAIGHT
     tile: int = 0  # UDIM number; 0 for an image without tiles
     matrix: tuple = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)  # decoded RGB to the working space, row-major
 
     def __post_init__(self):
+        self.vectors(matrix=9)
+        if isinstance(self.texels, Blocks):
+            return
         texels = np.asarray(self.texels)
         if texels.dtype not in _TEXELS:
             raise ValueError(f"image '{self.name}': texels are {texels.dtype}, expected uint8, uint16 or float32")
         if texels.ndim != 3 or texels.shape[2] not in (1, 3, 4):
             raise ValueError(f"image '{self.name}': texels have shape {texels.shape}, expected (height, width, 1, 3 or 4)")
         self.set("texels", array(texels, texels.dtype, (None, None, None), f"image '{self.name}'"))
-        self.vectors(matrix=9)
 
 
 @register

@@ -6,10 +6,9 @@ the image, and none is only a bound.
 
 import numpy as np
 
+from ..bindings.blocks import even_sample
 from ..bindings.enums import AlphaMode, MathOperation, MixMode, NodeKind, Transfer, VectorOperation
 from ..bindings.shading import NodeRef
-
-_TEXELS = 4096
 
 _MATH = {
     MathOperation.ADD: lambda a, b, c: a + b,
@@ -110,8 +109,7 @@ def _result(node, inputs):
 
 def _decoded(image):
     """Return an even sample of an image's texels, (n, 4), with straight alpha, in the working space."""
-    texels = image.texels.reshape(-1, image.texels.shape[2])
-    texels = texels[:: max(1, len(texels) // _TEXELS)]
+    texels = even_sample(image.texels)
     if texels.dtype != np.float32:
         texels = texels / float(np.iinfo(texels.dtype).max)
     texels = texels.astype(float)

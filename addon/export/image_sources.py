@@ -19,6 +19,7 @@ _SHOWS_PACKED_LAYERS = bpy.app.version >= (4, 3)  # older Cycles finds no pixels
 
 
 def read_all(image, seen, tell):
+    """Return the pictures of an image, or yield them where there are many, so that not all have to be in memory."""
     if image.source == "TILED":
         return _read_tiles(image, tell)
     if image.source == "MOVIE":
@@ -116,7 +117,6 @@ def _read_tiles(image, tell):
     if image.is_dirty:
         text = "those of tile 1001 alone are shown" if in_memory else "its files are shown, as in Cycles"
         tell(f"image '{image.name}' has unsaved changes, {text}", severity=Severity.DIFFERENT if in_memory else Severity.HINT)
-    pictures = []
     for tile in image.tiles:
         found = (_read_tile_in_memory if in_memory else _read_tile)(image, tile, tell)
         if not found:
@@ -124,8 +124,7 @@ def _read_tiles(image, tell):
             text = f"tile {tile.number} of image '{image.name}' cannot be read ({path}), magenta is used"
             tell(text, severity=Severity.WRONG)
             found = [missing(image, tile.number)] if HAS_TEXEL else []
-        pictures += found
-    return pictures
+        yield from found
 
 
 def _read_tile(image, tile, tell):

@@ -5,12 +5,14 @@ import hashlib
 import numpy as np
 
 from ..bindings import snapshot
+from ..bindings.blocks import Blocks
 from ..bindings.enums import AlphaMode
 from ..host import main_thread
 from ..host.by_scene import identity
 from ..messages.severity import Severity
 from .frames import shown
 from .image_sources import read_all, read_memory
+from .scratch import Scratch
 
 # Takes the place of an image that is not used any more, until another one gets its number.
 _NOTHING = snapshot.Image(name="nothing", texels=np.zeros((1, 1, 1), np.uint8))
@@ -27,20 +29,26 @@ class Images:
         self.frame = 1  # of the scene
         self.is_preview = False  # whether the images are shown in a preview of a material or a world
         self._kept = kept
+        self._scratch = Scratch()
         self._ranges = {}
         self._tables = {}
         self._free = set()  # numbers
 
-    def numbers(self, image, user, tell):
-        """Return (first, count) of a Blender image, one for each tile; None if it cannot be read. tell(text, key, severity)."""
+    def numbers(self, image, user, tell, in_memory=False):
+        """Return (first, count) of a Blender image, one for each tile; None if it cannot be read. tell(text, key, severity).
+
+        in_memory: keep the texels in memory, since all of them will be read.
+        """
         seen = shown(image, user, self.frame)
         key = (identity(image), image.colorspace_settings.name, image.alpha_mode, seen)
         if key not in self._ranges:
             with main_thread.obeying(self.obey):
-                read = read_all if self._kept is None else self._kept.pictures(read_all)
+                read = self._reader(read_all, in_memory)
                 # Cycles shows unsaved strokes in previews.
                 if self.is_preview and image.source == "FILE" and image.is_dirty:
-                    read = read_memory
+                    read = self._reader(read_memory, in_memory)
+                elif self._kept is not None:
+                    read = self._kept.pictures(read)
                 pictures = read(image, seen, tell)
             self._ranges[key] = (self.repeat(pictures), len(pictures)) if pictures else None
         if self._ranges[key] is None:
@@ -49,6 +57,17 @@ class Images:
                 severity=Severity.WRONG,
             )
         return self._ranges[key]
+
+    def _reader(self, read, in_memory):
+        """Return a function like read(image, seen, tell) that returns a list, with texels beyond the limit in a file."""
+        if in_memory:
+            return lambda *arguments: list(read(*arguments))
+
+        def stored(image, seen, tell):
+            held = sum(known.texels.nbytes for known in self.list if not isinstance(known.texels, Blocks))
+            return self._scratch.stored(read(image, seen, tell), held, tell)
+
+        return stored
 
     def repeat(self, pictures):
         """Add images, even known ones, so that their numbers are consecutive; return the first number."""
@@ -85,7 +104,7 @@ class Images:
 class NoPictures:
     """A stand-in for Images that reads none, for panels and for a lamp alone."""
 
-    def numbers(self, image, user, tell):
+    def numbers(self, image, user, tell, in_memory=False):
         return 0, 1
 
     def repeat(self, pictures):

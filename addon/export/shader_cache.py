@@ -67,8 +67,8 @@ class _Asked:
     def list(self):
         return self._images.list
 
-    def numbers(self, image, user, tell):
-        found = self._images.numbers(image, user, tell)
+    def numbers(self, image, user, tell, in_memory=False):
+        found = self._images.numbers(image, user, tell, in_memory)
         self.pictures.add(identity(image))
         self.with_time = self.with_time or image.source in _CHANGES_WITH_TIME
         if found is not None:

@@ -86,7 +86,12 @@ def _picture(graph, site):
     if node.image is None or graph.images is None:
         graph.tell(site, "has no image, magenta is used", "", severity=Severity.WRONG)
         return None
-    return graph.images.numbers(node.image, node.image_user, lambda text, key="", **more: graph.tell(site, text, key, **more))
+
+    def tell(text, key="", **more):
+        graph.tell(site, text, key, **more)
+
+    # The library reads all texels of a sky to sample it.
+    return graph.images.numbers(node.image, node.image_user, tell, in_memory=graph.is_of_world)
 
 
 def _has_color_under_alpha(image):

@@ -109,7 +109,10 @@ def _side(image, name, images, who, messages):
     found = None
     if image is not None:
         found = images.numbers(
-            image, None, lambda text, key="", **more: messages.add(f"{who}, side {name}: {text}", key, **more)
+            image,
+            None,
+            lambda text, key="", **more: messages.add(f"{who}, side {name}: {text}", key, **more),
+            in_memory=True,
         )
     if found is not None:
         return found[0], images.list[found[0]]

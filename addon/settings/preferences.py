@@ -4,7 +4,7 @@ import bpy
 from bpy.app.handlers import persistent
 from bpy.props import EnumProperty, IntProperty, StringProperty
 
-from ..export import settings
+from ..export import scratch, settings
 from ..farm import pipe_pool
 from .scene_settings import QUALITIES
 
@@ -15,6 +15,10 @@ _ADDON = __package__.rpartition(".")[0]
 def _threads_changed(self, _context):
     # A render thread must not access Blender's context: copy the value.
     settings.default_threads = self.threads
+
+
+def _image_memory_changed(self, _context):
+    scratch.image_memory = self.image_memory << 20
 
 
 def _python_changed(self, _context):
@@ -32,6 +36,16 @@ class LancerPreferences(bpy.types.AddonPreferences):
         max=1024,
         default=0,
         update=_threads_changed,
+    )
+    image_memory: IntProperty(
+        name="Memory for Images (MB)",
+        description="Memory for the images of a scene. Images beyond it are read piece by piece from a file in the folder for "
+        "temporary files (Preferences > File Paths), which is slower; the file ends with the render. 0 = a quarter of this "
+        "computer's memory",
+        min=0,
+        max=1 << 30,
+        default=0,
+        update=_image_memory_changed,
     )
     farm_python: StringProperty(
         name="Python with Dask",
@@ -57,6 +71,7 @@ class LancerPreferences(bpy.types.AddonPreferences):
         column = self.layout.column()
         column.use_property_split = True
         column.prop(self, "threads")
+        column.prop(self, "image_memory")
         column.prop(self, "quality")
         column.prop(self, "farm_python")
 
@@ -83,6 +98,7 @@ def register():
     preferences = _found()
     if preferences is not None:
         _threads_changed(preferences, None)
+        _image_memory_changed(preferences, None)
         _python_changed(preferences, None)
     bpy.app.handlers.load_post.append(_start_new_file)
 
@@ -91,4 +107,5 @@ def unregister():
     bpy.app.handlers.load_post.remove(_start_new_file)
     bpy.utils.unregister_class(LancerPreferences)
     settings.default_threads = 0
+    scratch.image_memory = 0
     pipe_pool.default_python = ""

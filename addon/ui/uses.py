@@ -13,6 +13,7 @@ _MEMORY = {
     "geometry_bytes": "Geometry and lights",
     "accelerator_bytes": "Acceleration",
     "texture_bytes": "Textures",
+    "mapped_bytes": "Textures in a temporary file",
     "film_bytes": "Film",
 }
 
@@ -42,7 +43,8 @@ class LANCER_RENDER_PT_uses(LancerRenderPanel, bpy.types.Panel):
             sentence(column, context, f"Rendered by the code for {kernel_in_words(statistics['kernel'])}")
             column.separator()
             for key, what in _MEMORY.items():
-                column.label(text=f"{what}: {_size(statistics[key])}")
+                if statistics[key] or key != "mapped_bytes":
+                    column.label(text=f"{what}: {_size(statistics[key])}")
         column.separator()
         if draw_measuring(column, context.scene, _MEASURE):
             return
