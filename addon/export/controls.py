@@ -48,7 +48,6 @@ CONTROLS = (
     Controls("Object", ("location", "rotation_euler", "scale", "delta_location", "delta_rotation_euler", "delta_scale")),
     Controls("Object", ("parent", "hide_viewport", "active_material", "pass_index", "is_holdout")),
     Controls("Object", ("visible_camera", "visible_diffuse", "visible_glossy", "visible_transmission", "visible_shadow")),
-    Controls("Object", ("visible_raycast",), since=(5, 2)),
     Controls("Object", ("shadow_terminator_geometry_offset",), since=(4, 5)),
     Controls("CyclesObjectSettings", ("shadow_terminator_geometry_offset",), before=(4, 5)),
     Controls("CyclesObjectSettings", ("use_adaptive_subdivision", "dicing_rate"), before=(5, 0)),

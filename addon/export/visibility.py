@@ -12,7 +12,6 @@ _BITS = {
     "volume_scatter": Ray.VOLUME,
     "scatter": Ray.VOLUME,
     "shadow": Ray.SHADOW,
-    "raycast": Ray.RAYCAST,
 }
 
 

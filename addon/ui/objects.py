@@ -5,8 +5,7 @@ import bpy
 from .panel import LancerPanel, setting
 
 _SURFACES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
-_RAYS = ("camera", "diffuse", "glossy", "transmission", "shadow", "raycast")
-_OF_OCCLUDERS = {"shadow", "raycast"}
+_RAYS = ("camera", "diffuse", "glossy", "transmission", "shadow")
 
 
 class LancerObjectPanel(LancerPanel):
@@ -91,8 +90,8 @@ class LANCER_OBJECT_PT_ray_visibility(LancerPanel, bpy.types.Panel):
         thing = context.object
         column = self._column()
         for ray in _RAYS:
-            # Lamps are no occluders; Blender has no Raycast before 5.2.
-            if hasattr(thing, f"visible_{ray}") and not (ray in _OF_OCCLUDERS and thing.type == "LIGHT"):
+            # Lamps are no occluders.
+            if not (ray == "shadow" and thing.type == "LIGHT"):
                 column.prop(thing, f"visible_{ray}", text=ray.capitalize())
 
 
