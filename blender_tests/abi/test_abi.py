@@ -41,7 +41,7 @@ def test_wrong_numbers_in_instances(raw):
     refused(raw.add_instances(scene, [raw.instance(first_slot=5)]), "Thing", "5")
     refused(raw.add_instances(scene, [raw.instance(first_slot=2**32 - 1, slot_count=2)]), "Thing", "slot")
     refused(raw.add_instances(scene, [raw.instance(name=6)]), "name")
-    refused(raw.add_instances(scene, [raw.instance(hidden_from=64)]), "Thing", "hidden_from", "64")
+    refused(raw.add_instances(scene, [raw.instance(hidden_from=128)]), "Thing", "hidden_from", "128")
     refused(raw.add_instances(scene, [raw.instance(flags=2)]), "Thing", "flags", "2")
     refused(raw.add_instances(scene, [raw.instance()], names=b"endless"), "name")
 
@@ -110,7 +110,7 @@ def test_wrong_materials(raw):
     def refused_with(lobe, *words):
         refused(add(raw, scene, "material", raw.material(lobes=[lobe])), "material 'Paint'", *words)
 
-    refused_with(raw.lobe(kind=18), "kind", "18")
+    refused_with(raw.lobe(kind=19), "kind", "19")
     refused(add(raw, scene, "material", raw.material(lobes=[raw.lobe()] * 65)), "material 'Paint'", "65")
     refused_with(raw.lobe(kind=abi.LobeKind.PRINCIPLED), "rincipled")
     for kind in (abi.LobeKind.GLOSSY, abi.LobeKind.GLASS, abi.LobeKind.SHEEN):

@@ -36,31 +36,27 @@ template <class F> LANCER_LANE MaskOf<F> enters(const Bsdf<F> &bsdf) {
   return there;
 }
 
-// Replaces all lobes in leaving lanes by a white diffuse one, about the mean normal of the subsurface lobes.
+// Replaces all lobes by a white diffuse one, about the mean normal of the subsurface lobes.
 template <class F> void leave_below(Bsdf<F> &bsdf) {
   using V = Vec3<F>;
-  const MaskOf<F> leaving = bsdf.leaving;
-  const V none(F(0.0f)), white(F(1.0f));
-  V n = none;
+  V n(F(0.0f));
   MaskOf<F> dimmed = uniform<F>(false);
   for (int i = 0; i < bsdf.count; ++i) {
-    Lobe<F> &lobe = bsdf.lobes[i];
-    if (is_subsurface(lobe)) {
-      n += abs(mean(lobe.color)) * bsdf.frames[lobe.frame].n;
-      if (lobe.variant & kDimmedExit)
-        dimmed = dimmed | !black(lobe.color);
-    }
-    lobe.color = select(leaving, none, lobe.color);
+    const Lobe<F> &lobe = bsdf.lobes[i];
+    if (!is_subsurface(lobe))
+      continue;
+    n += abs(mean(lobe.color)) * bsdf.frames[lobe.frame].n;
+    if (lobe.variant & kDimmedExit)
+      dimmed = dimmed | !black(lobe.color);
   }
-  bsdf.emission = select(leaving, none, bsdf.emission);
-  bsdf.straight = select(leaving, none, bsdf.straight);
-  Lobe<F> exit = make_matte<F>(Matte::BurleyExit, select(leaving, white, none));
+  bsdf.count = 0;
+  bsdf.frame_count = 1;
+  bsdf.emission = bsdf.straight = V(F(0.0f));
+  Lobe<F> exit = make_matte<F>(Matte::BurleyExit, V(F(1.0f)));
   exit.alpha_x = select(dimmed, F(0.5f), F(0.0f));
   if (!any(dimmed))
     exit.shape = LobeShape::Lambert;
-  exit.frame = add_frame(bsdf, select(leaving, unit_or(n, bsdf.ns), none));
-  if (bsdf.count == kMaxLobes)
-    --bsdf.count;
+  exit.frame = add_frame(bsdf, unit_or(n, bsdf.ns));
   bsdf.add(exit);
 }
 

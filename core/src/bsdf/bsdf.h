@@ -74,10 +74,10 @@ template <class F> struct Bsdf {
   // A smooth sheet scatters rays of the camera; other rays pass it straight: their share is no lobe.
   B seen_by_camera = uniform<F>(true);
   V straight{F(0.0f)};
-  // Walks below the surface: whether the integrator sends any; paths that a diffuse lobe has scattered before; paths that come
-  // from below; and the width of a pixel there, in the user's units.
+  // Walks below the surface: whether the integrator sends any; paths that a diffuse lobe has scattered before; and the width of
+  // a pixel there, in the user's units.
   bool walks = false;
-  B after_diffuse = uniform<F>(false), leaving = uniform<F>(false);
+  B after_diffuse = uniform<F>(false);
   F pixel{0.0f};
   // Uninitialised: only the first frame_count and count entries exist.
   union {

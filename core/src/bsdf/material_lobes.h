@@ -217,10 +217,10 @@ void add_described(const Material *const *materials, size_t number, const Values
     add_principled(bsdf, inputs, fixed ? ready.principled() : evaluate(*described.principled, read), ready);
 }
 
-// The paths whose hits ask for lobes: the members of the same names of Bsdf.
+// The paths whose hits ask for lobes: the members of the same names of Bsdf. leaving: all of them come from below the surface.
 template <class F> struct AskingPaths {
-  MaskOf<F> seen_by_camera = uniform<F>(true), after_diffuse = uniform<F>(false), leaving = uniform<F>(false);
-  bool walks = false;
+  MaskOf<F> seen_by_camera = uniform<F>(true), after_diffuse = uniform<F>(false);
+  bool walks = false, leaving = false;
   F pixel{0.0f};
 };
 
@@ -240,12 +240,10 @@ LANCER_LANE void find_lobes(const Material *const *materials, const Values &valu
   bsdf.seen_by_camera = paths.seen_by_camera;
   bsdf.walks = paths.walks;
   bsdf.after_diffuse = paths.after_diffuse;
-  bsdf.leaving = paths.leaving;
   bsdf.pixel = paths.pixel;
-  const bool leaving = any(paths.leaving);
-  for (size_t i = 0; i < material.lobes.size() && !(leaving && !material.bends_exits); ++i)
+  for (size_t i = 0; i < material.lobes.size() && !(paths.leaving && !material.bends_exits); ++i)
     add_described<F>(materials, i, values, hole, bsdf);
-  if (leaving)
+  if (paths.leaving)
     leave_below(bsdf);
   bsdf.complete();
 }

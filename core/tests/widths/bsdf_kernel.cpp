@@ -155,8 +155,7 @@ void report_all(Bsdf<F> &bsdf, const Place *of, Report &add) {
     report_value("eval of what was drawn", bsdf.eval(sample.wi), add);
     report_value("eval_lit of what was drawn", bsdf.eval_lit(sample.wi), add);
   }
-  // Let light leave from below in some lanes.
-  bsdf.leaving = bsdf.wo.x > F(0.0f);
+  // Let light leave from below.
   leave_below(bsdf);
   bsdf.complete();
   report_value("eval of an exit", bsdf.eval(bsdf.wo), add);

@@ -193,10 +193,10 @@ void SurfaceStage::make_opaque() { std::fill_n(transmittance_, count_, glm::vec3
 void SurfaceStage::build_lobes() {
   lobes_.used = hits_.used;
   // Light from below meets no other part of the surface.
-  each_lane(materials_.leaving, [&](uint32_t lane) {
+  for (uint32_t lane = 0; lane < count_ && materials_.leaving; ++lane) {
     emission_[lane] = transmittance_[lane] = glm::vec3(0.0f);
     materials_.through[lane] = 0.0f;
-  });
+  }
   kernel_.build(surfaces_, materials_, lobes_);
   for (uint32_t sheets = lobes_.sheets; sheets != 0; sheets &= sheets - 1) {
     const uint32_t lane = uint32_t(std::countr_zero(sheets));
@@ -214,7 +214,8 @@ void SurfaceStage::describe() {
 void SurfaceStage::clear() {
   count_ = 0;
   hits_.used = hits_.on_mesh = hits_.smooth = hits_.exact = hits_.on_plane = hits_.on_cylinder = hits_.on_cone = 0;
-  materials_.ends = materials_.seen_by_camera = materials_.after_diffuse = materials_.leaving = 0;
+  materials_.ends = materials_.seen_by_camera = materials_.after_diffuse = 0;
+  materials_.leaving = false;
 }
 
 Surface SurfaceStage::surface(uint32_t lane) const {

@@ -44,9 +44,10 @@ struct alignas(64) MaterialBlock {
   uint32_t holes = 0;                              // bits of lanes: lobes are hidden by a hole; by cut_holdouts()
   uint32_t ends = 0;                               // bits of lanes: the surface scatters no light
   uint32_t seen_by_camera = 0;                     // bits of lanes, by add()
-  // Paths below surfaces: whether PATH sends any; by place_path(): bits of lanes, and the width of a pixel, user's units.
-  bool walks = false;
-  uint32_t after_diffuse = 0, leaving = 0;
+  // Paths below surfaces: whether PATH sends any; by place_path(): whether all lanes come from below, bits of lanes, and the
+  // width of a pixel, user's units.
+  bool walks = false, leaving = false;
+  uint32_t after_diffuse = 0;
   Floats pixel;
   bool shares = false; // diffuse and glossy shares of light are wanted
 };
@@ -107,10 +108,10 @@ public:
   // Lets surfaces send paths below them.
   void walk_below() { materials_.walks = true; }
   // Describes the path of a lane to lobes that send paths below: whether a diffuse lobe has scattered it, whether it comes from
-  // below, and the width of a pixel where it meets the surface, in the user's units.
+  // below, as all of its block then do, and the width of a pixel where it meets the surface, in the user's units.
   void place_path(uint32_t lane, bool after_diffuse, bool leaving, float pixel) {
     materials_.after_diffuse |= uint32_t{after_diffuse} << lane;
-    materials_.leaving |= uint32_t{leaving} << lane;
+    materials_.leaving = leaving;
     materials_.pixel[lane] = pixel;
   }
   // Lets nodes look around by these rays, which must outlive the stage.
@@ -120,7 +121,7 @@ public:
   // Evaluates the nodes of the material, if it has any. view_of(lane): returns the View of a lane.
   template <class ViewOf> void ask_nodes(ViewOf &&view_of) {
     const Material &material = *materials_.material[0];
-    if (material.fixed() || (materials_.leaving != 0 && !material.bends_exits))
+    if (material.fixed() || (materials_.leaving && !material.bends_exits))
       return;
     View views[kBlockLanes];
     for (uint32_t lane = 0; lane < count_; ++lane)

@@ -80,8 +80,8 @@ void build(const SurfaceBlock &surfaces, const MaterialBlock &materials, LobeBlo
                   load3(surfaces.wo, first), load3(surfaces.ns, first), load3(surfaces.ng, first), bsdf,
                   {.seen_by_camera = some(materials.seen_by_camera, first),
                    .after_diffuse = some(materials.after_diffuse, first),
-                   .leaving = some(materials.leaving, first),
                    .walks = materials.walks,
+                   .leaving = materials.leaving,
                    .pixel = load(materials.pixel + first)});
     store3(lobes.ns, first, bsdf.ns);
     store3(lobes.ng, first, bsdf.ng);
