@@ -35,6 +35,8 @@ class MappedFile:
         """Return the mapping of the whole file, which can only be read."""
         if self._map is None:
             self._map = mmap.mmap(self._file.fileno(), self.size, access=mmap.ACCESS_READ)
+            # The mapping has a handle of its own.
+            self._file.close()
             # Without this advice the kernel reads and maps the neighbours of each page.
             if hasattr(mmap, "MADV_RANDOM"):
                 self._map.madvise(mmap.MADV_RANDOM)

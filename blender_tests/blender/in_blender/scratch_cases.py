@@ -7,7 +7,7 @@ import os
 import bpy
 import numpy as np
 import stage
-from export_cases import export_told
+from export_cases import ExportProbe, export_told
 from image_cases import image, show
 
 from addon import engine
@@ -56,6 +56,12 @@ def _names():
     return [name for name in os.listdir(bpy.app.tempdir) if name.startswith("lancer_")]
 
 
+def _exported():
+    told = export_told()
+    ExportProbe.caught = None
+    return told
+
+
 def _picture(snapshot):
     with Session.upload(snapshot) as session:
         assert session.render_all(4)
@@ -65,9 +71,9 @@ def _picture(snapshot):
 def bits():
     """Render with all images in memory and with those beyond one byte in a file, and from a saved snapshot of the latter."""
     _build()
-    plain, told = export_told()
+    plain, told = _exported()
     scratch.image_memory = 1
-    moved, told_moved = export_told()
+    moved, told_moved = _exported()
     (want, before), (got, after) = _picture(plain), _picture(moved)
     saved = io.BytesIO()
     moved.save(saved)
@@ -100,7 +106,7 @@ def ends():
     stage.camera()
     bpy.ops.render.render()
     left, statistics = [_open_files()], engine.last_statistics[scene.name]
-    snapshot, _ = export_told()
+    snapshot, _ = _exported()
     try:
         Session.upload(snapshot, poll=lambda: True, release=True)
     except Cancelled:
@@ -130,7 +136,7 @@ def full():
     made = scratch.tempfile.TemporaryFile
     scratch.tempfile.TemporaryFile = lambda **_: Full()
     try:
-        snapshot, told = export_told()
+        snapshot, told = _exported()
     finally:
         scratch.tempfile.TemporaryFile = made
     return {"moved": sum(isinstance(picture.texels, Blocks) for picture in snapshot.images), "messages": told.lines()}
