@@ -123,9 +123,10 @@ _TEXELS = {
 
 def image(i):
     height, width, channels = i.texels.shape
-    given = {"texels": _address(i.texels), "layout": abi.Layout.ROWS, "gaps": 0}
     if isinstance(i.texels, Blocks):
         given = {"texels": _address(i.texels.array), "layout": abi.Layout.BLOCKS, "gaps": min(i.texels.gaps, _MOST_GAPS)}
+    else:
+        given = {"texels": _address(i.texels), "layout": abi.Layout.ROWS, "gaps": 0}
     return _struct(abi.Image, i, width=width, height=height, channels=channels, kind=_TEXELS[i.texels.dtype], **given)
 
 
