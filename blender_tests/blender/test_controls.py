@@ -38,6 +38,7 @@ OF_OTHERS = {
     "fps": "of the Scene Time node",
     "fps_base": "of the Scene Time node",
     "frame_current": "chosen in the timeline",
+    "frame_start": "of the images of nodes",
     "frame_subframe": "chosen in the timeline, for the ages of particles",
     "grease_pencil": "of passes that Blender draws",
     "height": "of regions and pictures; of mist, which EEVEE alone has",

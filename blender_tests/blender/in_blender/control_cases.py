@@ -222,6 +222,8 @@ class _Stage:
         if hasattr(modifier, "use_adaptive_subdivision"):
             modifier.use_adaptive_subdivision = True
         else:
+            # Before 4.5 Cycles divides what the levels leave: none, so that the other settings act.
+            modifier.levels = modifier.render_levels = 0
             cycles.feature_set, self.cube.cycles.use_adaptive_subdivision = "EXPERIMENTAL", True
         cycles.dicing_camera = stage.link("Beside", self.camera.data, (3.0, -6.0, 3.0))
         for cycles.max_subdivisions in (1, 12):

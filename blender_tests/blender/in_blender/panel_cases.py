@@ -87,6 +87,7 @@ def panels():
     )
     shown, errors = {cls.__name__: {} for cls in ui.CLASSES}, []
     context.light.use_nodes = True
+    cube.modifiers.new("Subdivision", "SUBSURF")
     for variant in _variants(context):
         for cls in ui.CLASSES:
             try:

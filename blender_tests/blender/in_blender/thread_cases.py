@@ -84,9 +84,9 @@ def stopped():
             image.tiles.new(number)
     read, load = [], colorspace._load
 
-    def counted(path, *arguments):
+    def counted(data, path, *arguments):
         read.append(os.path.basename(path))
-        return load(path, *arguments)
+        return load(data, path, *arguments)
 
     def obey():
         if sum(name.startswith("tile") for name in read) == 3:
