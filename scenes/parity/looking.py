@@ -180,10 +180,9 @@ def _block(scene, surface):
 
 @variants(
     values={
-        "diffuse": ("ShaderNodeBsdfDiffuse", {}, {}),
-        "glossy": ("ShaderNodeBsdfGlossy", {"distribution": "GGX"}, {"Roughness": 0.3}),
+        "diffuse": (("ShaderNodeBsdfDiffuse", {}, {}), {"quick": True}),
+        "glossy": (("ShaderNodeBsdfGlossy", {"distribution": "GGX"}, {"Roughness": 0.3}), {}),
     },
-    quick=True,
 )
 def bevel_of(scene, value):
     kind, props, inputs = value

@@ -11,7 +11,7 @@ import bpy
 import numpy as np
 import stage
 
-from addon.export import colorspace, images
+from addon.export import colorspace, texels
 
 _SIZE = 256
 # Colours as bytes: two tiles, the second frame of a sequence, premultiplied bytes, a colour space that is not a curve.
@@ -89,7 +89,7 @@ def watch(say):
 
     for name in ("_load", "_write"):
         setattr(colorspace, name, watched(name.strip("_"), getattr(colorspace, name)))
-    images.floats = watched("read", images.floats)
+    texels.floats = watched("read", texels.floats)
 
 
 def _save(folder, name):
