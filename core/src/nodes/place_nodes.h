@@ -48,9 +48,8 @@ template <class F> Vector3<F> from_camera(const Site<F> &site, uint32_t kind, co
     const glm::dvec3 place = camera.direction_from_camera(p * site.user_scale()) + camera.to_world.translation;
     return glm::vec3(site.scene.normalisation ? site.scene.normalisation->to_world(place) : place);
   };
-  return by_camera(site, kind, v, of_point, [](const Camera &camera, const glm::dvec3 &d) {
-    return glm::vec3(camera.direction_from_camera(d));
-  });
+  return by_camera(site, kind, v, of_point,
+                   [](const Camera &camera, const glm::dvec3 &d) { return glm::vec3(camera.direction_from_camera(d)); });
 }
 template <class F> Vector3<F> to_camera(const Site<F> &site, uint32_t kind, const Vector3<F> &v) {
   const auto of_point = [&](const Camera &camera, const glm::dvec3 &p) {
