@@ -68,7 +68,7 @@ def export_settings(depsgraph, passes, world, messages):
 def world_of(depsgraph):
     """Return the evaluated world of a depsgraph's view layer; None without one."""
     world = getattr(depsgraph.view_layer, "world_override", None) or depsgraph.scene.world
-    # Both refer to original data without animation.
+    # The layer and the scene refer to original data, which have no animation.
     return None if world is None else world.evaluated_get(depsgraph)
 
 

@@ -50,7 +50,7 @@ _GRADIENTS = {GradientKind.RADIAL: _WAVES}
 _LOOK_UPS = {Interpolation.LINEAR: 15.0, Interpolation.CLOSEST: 10.0, Interpolation.CUBIC: 35.0}
 # By the number of dimensions: for the texture, and for each of its octaves.
 _NOISE = ((5.0, 3.5), (6.0, 6.8), (10.0, 14.5), (12.0, 42.0))
-# Of Voronoi cells, by the number of dimensions.
+# Costs of Voronoi cells, by the number of dimensions.
 _CELLS = {
     VoronoiFeature.F1: (10.0, 35.0, 150.0, 710.0),
     VoronoiFeature.F2: (10.0, 36.0, 155.0, 800.0),

@@ -66,7 +66,7 @@ def test_records_are_those_of_rows():
     assert loaded == scenes[0] and isinstance(loaded.images[0].texels, np.ndarray)
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="other systems choose the pages themselves")
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux lets go of single pages of a mapped file")
 def test_pages_stay_under_the_limit():
     rows = texels(1024, 4096, 4)
     (found,) = blocks_of(rows, limit=rows.nbytes // 2)

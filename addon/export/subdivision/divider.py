@@ -22,7 +22,7 @@ class Divider:
         scene = depsgraph.scene
         chosen = getattr(getattr(scene, "cycles", None), "dicing_camera", None) or (scene.camera if self._in_view else None)
         if chosen is not None and chosen.type == "CAMERA":
-            # What differs about the camera is told where it is the picture's.
+            # Drop its messages: the export of the picture's camera tells them.
             camera = export_camera(chosen, depsgraph, Messages())
         self._camera = camera
 

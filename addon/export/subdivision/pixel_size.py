@@ -37,7 +37,7 @@ def _perspective(camera):
     forward = ahead / np.linalg.norm(ahead)
     turn = beside / np.linalg.norm(beside) - forward
     angle = np.linalg.norm(turn - (turn @ forward) * forward)
-    # Of the four sides of the pyramid of view: the normal to the outside, and the direction along the side away from the eye.
+    # Outward normals of the four sides of the pyramid of view, and the directions along the sides away from the eye.
     normals = np.array(((1.0, 0.0, -right), (0.0, 1.0, -top), (-1.0, 0.0, left), (0.0, -1.0, bottom)))
     along = np.array(((right, 0.0, 1.0), (0.0, top, 1.0), (left, 0.0, 1.0), (0.0, bottom, 1.0)))
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)

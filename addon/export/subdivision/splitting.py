@@ -13,7 +13,7 @@ from .edge_table import MOST_SEGMENTS, SPLIT, EdgeTable
 from .patches import FacePatches
 
 _SQUARE = np.array(((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)))
-# Of edges of equal length, the first ones of a piece count as longer, whatever the rounding.
+# Factor by which the first edges of a piece count as longer, so that no rounding decides between edges of equal length.
 _BIAS = 1.00012345
 
 
@@ -123,7 +123,7 @@ class _Splitter:
         middle = 0.5 * (start + end)
         uvs = np.stack([start, middle, middle, end], axis=1).reshape(-1, 2, 2)
         patch = np.repeat(len(here) + faces, 2)
-        # Of a corner's patch, the half at the corner is the lower side; the next corner's patch has the other half at its left.
+        # The half at the corner is the lower side of its patch; the other half is the left side of the next corner's patch.
         after = cage.neighbours()[0][first]
         low, left = _SQUARE[[0, 1]], _SQUARE[[3, 0]]
         for half in (0, 1):

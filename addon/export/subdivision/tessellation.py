@@ -158,7 +158,7 @@ def _of_halves(segments, edges, corners):
     if len(halved) == 3:
         a, b, c = (edge[1] for edge in edges)
         return [(corners[0], a, c), (corners[1], b, a), (corners[2], c, b), (a, b, c)]
-    # Of two halved edges, begin with the one that the other follows.
+    # Begin with the halved edge that the other halved edge follows, if there are two.
     side = 2 if halved == [0, 2] else halved[0]
     start, end, apex = (corners[(side + step) % 3] for step in range(3))
     middle = edges[side][1]

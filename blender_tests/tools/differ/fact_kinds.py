@@ -43,5 +43,5 @@ FACTS = {
         0.3,
     ),
 }  # fmt: skip
-# Those that send rays from a surface, which worlds and lamps are not.
+# Nodes that send rays from a surface, which worlds and lamps do not have.
 LOOKING = {"ShaderNodeAmbientOcclusion", "ShaderNodeBevel", "ShaderNodeRaycast"}

@@ -17,7 +17,7 @@ struct alignas(64) ScatterBlock {
   Floats pdf_scattered; // of wi among scattered paths, 0: a single direction
   Floats alpha2;        // alpha_x alpha_y of the sampled lobe, 0 for a single direction
   Floats share[2][3];   // diffuse and glossy share of the sample's weight, where shares are wanted
-  // Of walks below the surface, in lanes that enter it: see BsdfSample.
+  // Parameters of walks below the surface, in lanes that enter it: see BsdfSample.
   Floats below_color[3], below_radius[3], below_g;
   Words below_method;
   // Each of the following is one bit per lane.
