@@ -522,7 +522,7 @@ PARAMETERS = {
         "subsurface_radius": ("color", (0.0, 0.0, 0.0)),
         "subsurface_color": ("color", (0.8, 0.8, 0.8)),
         "subsurface_ior": ("index", 1.4),
-        "subsurface_anisotropy": ("turns", 0.0),
+        "subsurface_anisotropy": ("signed", 0.0),
     },
     Lobe: {
         "weight": ("color", (1.0, 1.0, 1.0)),

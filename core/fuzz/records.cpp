@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 
 namespace lancer_fuzz {
 
@@ -118,7 +119,25 @@ lancer_image Records::image() {
   // A size beyond any memory: rejected before the texels are read.
   if (bytes_.rarely(2))
     image.width = image.height = 1u << (19 + bytes_.below(13));
+  else if (image.texels && image.channels <= 4 && bytes_.rarely(40))
+    make_blocks(image);
   return image;
+}
+
+// Replaces the texels by blocks, with no byte more than the library may read.
+void Records::make_blocks(lancer_image &image) {
+  constexpr size_t kSide = 64, kAlignment = 64, kReadBeyond = 3;
+  static_assert(kMostSide <= kSide);
+  image.layout = 1 + bytes_.choice(1);
+  image.gaps = bytes_.below(3);
+  const size_t channel = image.kind == LANCER_TEXEL_U8 ? 1 : image.kind == LANCER_TEXEL_U16 ? 2 : 4;
+  const size_t size = kSide * kSide * image.channels * channel + kReadBeyond, given = size_t(image.width) * image.height * 4;
+  const auto free = [](std::byte *blocks) { ::operator delete(blocks, std::align_val_t(kAlignment)); };
+  const std::shared_ptr<std::byte> blocks(static_cast<std::byte *>(::operator new(size, std::align_val_t(kAlignment))), free);
+  for (size_t i = 0; i < size; ++i)
+    blocks.get()[i] = static_cast<const std::byte *>(image.texels)[i % (given * sizeof(float))];
+  kept_.push_back(blocks);
+  image.texels = blocks.get() + (bytes_.rarely(10) ? 1 : 0);
 }
 
 lancer_light Records::light(const Filled &filled) {

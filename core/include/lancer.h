@@ -5,7 +5,7 @@
  *     LANCER_CANCELLED, lancer_last_error() returns one sentence that names the object and the value.
  *   - The message is kept per thread until that thread's next call.
  *   - Handles are numbers. A freed, foreign or zero handle returns LANCER_ERROR_HANDLE and never crashes.
- *   - Arrays are copied during the call; the caller may free them when the call returns.
+ *   - Arrays are copied during the call; the caller may free them when the call returns. Texels of LANCER_LAYOUT_BLOCKS stay.
  *   - No call blocks for long: *_commit and *_render start work, *_wait waits for it and reports its progress.
  *   - Calls on different handles may come from different threads at once; calls on one handle are serialised.
  *
@@ -605,7 +605,7 @@ LANCER_API lancer_status lancer_compute_sky(uint32_t model, double elevation, do
  *                incidence. Below k = 1 the albedo would exceed 1 towards the horizon: cosines are clamped to at least
  *                m = max(color)^(1/(1 - k)), where it is 1, and 2 pi/(k + 1) becomes 2 pi ((1 - q)/(k + 1) + q/2), q = m^(k + 1)
  * The following are the lobes of Blender's shader nodes, as Cycles of the running version defines them. roughness is the
- * socket's: alpha is its square (DIFFUSE, SHEEN, VELVET: the value itself); anisotropy and rotation turn and stretch the lobe
+ * socket's: alpha is its square (DIFFUSE, SHEEN, VELVET, SUBSURFACE: the value itself); anisotropy and rotation turn and stretch the lobe
  * along tangent.
  *   DIFFUSE      Oren-Nayar of roughness; 0 is LAMBERT. option 0: before Blender 4.3, 1: energy-preserving, from 4.3
  *   GLOSSY       a metal of constant color, with distribution
@@ -710,7 +710,7 @@ typedef struct lancer_principled {
   lancer_parameter subsurface_radius;      /* [color 0] of red, green and blue, in world lengths */
   lancer_parameter subsurface_color;       /* [color 0.8] before 4.0 only */
   lancer_parameter subsurface_ior;         /* [index 1.4] of SKIN, and before 4.0 */
-  lancer_parameter subsurface_anisotropy;  /* [turns 0] mean cosine of scattering */
+  lancer_parameter subsurface_anisotropy;  /* [signed 0] mean cosine of scattering */
 } lancer_principled;
 
 typedef struct lancer_lobe {

@@ -37,7 +37,7 @@ LANCER_LANE ImageView image_view(const Image &image, uint32_t flags) {
   r.width = image.width;
   r.height = image.height;
   r.channels = image.channels;
-  r.texel_bytes = image.kind == TexelKind::U8 ? 1 : image.kind == TexelKind::U16 ? 2 : 4;
+  r.texel_bytes = image.channel_bytes();
   r.extension = static_cast<Extension>(flags & 0xf);
   r.interpolation = static_cast<Interpolation>(flags >> 4 & 0xf);
   r.curve = image.transfer == Transfer::Srgb;

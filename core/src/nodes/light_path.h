@@ -9,7 +9,7 @@
 namespace lancer {
 
 // Bits beside RayKind for the scattering event that sent the ray: a single direction, reflection.
-constexpr uint32_t kRaySingular = 64, kRayReflected = 128;
+constexpr uint32_t kRaySingular = 256, kRayReflected = 512;
 
 template <class F> struct LightPath {
   WordOf<F> kinds = WordOf<F>(0u); // RayKind, kRaySingular, kRayReflected; 0 for a sampled light
@@ -44,15 +44,15 @@ template <class F> LANCER_LANE F light_path_value(uint32_t which, const LightPat
 
 // Data of a Light Path node about a path: the kind of its last scattering event, and counts by kind.
 struct PathStory {
-  uint8_t kinds = RayKind::Camera; // see LightPath::kinds
+  uint16_t kinds = RayKind::Camera; // see LightPath::kinds
   uint8_t diffuse = 0, glossy = 0, transmission = 0, portals = 0;
 
   // The counts saturate at 255.
   void scatter(bool is_diffuse, bool transmitted, bool singular) {
     uint8_t &count = transmitted ? transmission : is_diffuse ? diffuse : glossy;
     count = uint8_t(std::min(count + 1, 255));
-    kinds = uint8_t((is_diffuse ? RayKind::Diffuse : RayKind::Glossy) |
-                    (transmitted ? uint32_t(RayKind::Transmission) : kRayReflected) | (singular ? kRaySingular : 0));
+    kinds = uint16_t((is_diffuse ? RayKind::Diffuse : RayKind::Glossy) |
+                     (transmitted ? uint32_t(RayKind::Transmission) : kRayReflected) | (singular ? kRaySingular : 0));
   }
   void pass_portal() { portals = uint8_t(std::min(portals + 1, 255)); }
   LightPath<float> told(float length, uint32_t scatterings, uint32_t passed_through) const {

@@ -114,7 +114,7 @@ template <class F> LANCER_LANE Alpha<F> select(const MaskOf<F> &m, const Alpha<F
   return {select(m, a.alpha, b.alpha)};
 }
 
-// Returns the number of a texel in memory, at which no result depends on the order of texels.
+// Returns the number of a texel in memory, in rows or in blocks.
 template <class N> LANCER_LANE N texel_number(const ImageView &image, const N &column, const N &row) {
   if (!image.blocks_across)
     return row * N(image.width) + column;

@@ -128,4 +128,4 @@ struct MaterialFlag { enum : uint32_t {
   X(Color, subsurface_radius, "subsurface radius", 0.0f)                                                                       \
   X(Color, subsurface_color, "subsurface colour", 0.8f)                                                                        \
   X(Index, subsurface_ior, "subsurface IOR", 1.4f)                                                                             \
-  X(Turns, subsurface_anisotropy, "subsurface anisotropy", 0.0f)
+  X(Signed, subsurface_anisotropy, "subsurface anisotropy", 0.0f)

@@ -71,6 +71,8 @@ public:
       return read_share(what, given, fallback);
     else if constexpr (kind == ParameterKind::Amount)
       return read_scalar(what, given, 0.0f, kBrightest, fallback);
+    else if constexpr (kind == ParameterKind::Signed)
+      return read_scalar(what, given, -1.0f, 1.0f, fallback);
     else if constexpr (kind == ParameterKind::Index || kind == ParameterKind::Denser)
       return read_ior(what, given);
     else if constexpr (kind == ParameterKind::Turns)
@@ -212,8 +214,7 @@ void make_schedules(Material &material) {
   for (const LobeDescription &lobe : material.lobes) {
     collect(lobe, surface);
     const bool bent = lobe.normal.varies() || lobe.normal.value != glm::vec3(0.0f) || material.normal.varies();
-    const bool dimmed = lobe.principled && lobe.principled->rules == Rules::Blender3;
-    material.bends_exits |= goes_below(lobe) && (bent || dimmed);
+    material.bends_exits |= goes_below(lobe) && bent;
     if (!lobe.principled)
       continue;
     const Parameter &below = lobe.principled->emission;

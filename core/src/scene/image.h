@@ -57,10 +57,11 @@ struct Image {
 
   LANCER_LANE const std::byte *data() const { return blocks ? blocks : texels.get(); }
   LANCER_LANE uint32_t blocks_across() const { return blocks_along(width); }
+  LANCER_LANE uint32_t channel_bytes() const { return kind == TexelKind::U8 ? 1 : kind == TexelKind::U16 ? 2 : 4; }
 
   LANCER_LANE size_t bytes() const {
-    const size_t texel = channels * (kind == TexelKind::U8 ? 1 : kind == TexelKind::U16 ? 2 : 4);
-    return blocks ? (size_t(blocks_along(width)) * blocks_along(height) << 2 * kBlockShift) * texel
+    const size_t texel = size_t(channels) * channel_bytes();
+    return blocks ? (size_t(blocks_across()) * blocks_along(height) << 2 * kBlockShift) * texel
                   : size_t(width) * height * texel;
   }
 };

@@ -48,7 +48,7 @@ enum class Rules : uint32_t { Blender3 = 0, Blender4 = 1, Blender45 = 2, Blender
 inline constexpr float kSmallestIor = 1e-5f;
 
 // Kinds of parameters, see lancer_parameter.
-enum class ParameterKind { Color, Share, Amount, Index, Denser, Turns, Direction, Vector };
+enum class ParameterKind { Color, Share, Amount, Signed, Index, Denser, Turns, Direction, Vector };
 constexpr bool is_of_three(ParameterKind kind) {
   return kind == ParameterKind::Color || kind == ParameterKind::Direction || kind == ParameterKind::Vector;
 }

@@ -138,6 +138,8 @@ template <class F, class Values> struct ParameterReader {
       return share(parameter);
     else if constexpr (kind == ParameterKind::Amount)
       return scalar(parameter, 0.0f, kBrightest);
+    else if constexpr (kind == ParameterKind::Signed)
+      return scalar(parameter, -1.0f, 1.0f);
     else if constexpr (kind == ParameterKind::Index)
       return ior(parameter, kSmallestIor);
     else if constexpr (kind == ParameterKind::Denser)
