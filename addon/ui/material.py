@@ -50,13 +50,18 @@ class LANCER_MATERIAL_PT_surface(LancerMaterialPanel, bpy.types.Panel):
         row.prop(own, "ka")
 
 
-class LANCER_MATERIAL_PT_rendered(LancerMaterialPanel, bpy.types.Panel):
-    bl_label = "As Rendered"
+class LancerNodesPanel(LancerMaterialPanel):
+    """Of a material with nodes."""
+
     bl_parent_id = "LANCER_MATERIAL_PT_surface"
 
     @classmethod
     def poll(cls, context):
         return super().poll(context) and _has_nodes(context.material)
+
+
+class LANCER_MATERIAL_PT_rendered(LancerNodesPanel, bpy.types.Panel):
+    bl_label = "As Rendered"
 
     def draw(self, context):
         column = self.layout.column(align=True)
@@ -67,14 +72,9 @@ class LANCER_MATERIAL_PT_rendered(LancerMaterialPanel, bpy.types.Panel):
             sentence(column, context, line)
 
 
-class LANCER_MATERIAL_PT_costs(LancerMaterialPanel, bpy.types.Panel):
+class LANCER_MATERIAL_PT_costs(LancerNodesPanel, bpy.types.Panel):
     bl_label = "What Its Nodes Cost"
-    bl_parent_id = "LANCER_MATERIAL_PT_surface"
     bl_options = {"DEFAULT_CLOSED"}
-
-    @classmethod
-    def poll(cls, context):
-        return super().poll(context) and _has_nodes(context.material)
 
     def draw(self, context):
         column = self.layout.column(align=True)
