@@ -74,12 +74,15 @@ public:
 
   // Adds an object; the returned reference is valid until the next call.
   lancer_instance &place(uint32_t kind, uint32_t material, const glm::dmat4 &m = glm::dmat4(1.0)) {
+    return place(kind, {material}, m);
+  }
+  lancer_instance &place(uint32_t kind, std::initializer_list<uint32_t> materials, const glm::dmat4 &m = glm::dmat4(1.0)) {
     lancer_instance instance = {};
     to_rows(m, instance.matrix);
     instance.kind = kind;
     instance.first_slot = uint32_t(slots_.size());
-    instance.slot_count = 1;
-    slots_.push_back(material);
+    instance.slot_count = uint32_t(materials.size());
+    slots_.insert(slots_.end(), materials);
     instances_.push_back(instance);
     return instances_.back();
   }

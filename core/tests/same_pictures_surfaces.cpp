@@ -140,7 +140,7 @@ TEST(SamePictures, LightBelowSurfaces) {
   stand.camera = make_camera(30, 20);
   stand.commit();
   stand.render();
-  EXPECT_EQ(stand.hash.value(), 0xdad1693c0a3e430cu);
+  EXPECT_EQ(stand.hash.value(), 0x4b02481e699997f3u);
 }
 
 TEST(SamePictures, MathsOfNodes) {

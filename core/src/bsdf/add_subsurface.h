@@ -36,27 +36,27 @@ template <class F> LANCER_LANE MaskOf<F> enters(const Bsdf<F> &bsdf) {
   return there;
 }
 
-// Replaces all lobes by a white diffuse one, about the mean normal of the subsurface lobes.
-template <class F> void leave_below(Bsdf<F> &bsdf) {
+// Replaces all lobes by a white diffuse one, about the mean normal of the subsurface lobes. rules: of the material; dimmed: by
+// Burley's Fresnel weight.
+template <class F> void leave_below(Bsdf<F> &bsdf, Rules rules, MaskOf<F> dimmed) {
   using V = Vec3<F>;
   V n(F(0.0f));
-  MaskOf<F> dimmed = uniform<F>(false);
   for (int i = 0; i < bsdf.count; ++i) {
     const Lobe<F> &lobe = bsdf.lobes[i];
     if (!is_subsurface(lobe))
       continue;
     n += abs(mean(lobe.color)) * bsdf.frames[lobe.frame].n;
-    if (lobe.variant & kDimmedExit)
-      dimmed = dimmed | !black(lobe.color);
   }
   bsdf.count = 0;
   bsdf.frame_count = 1;
   bsdf.emission = bsdf.straight = V(F(0.0f));
-  Lobe<F> exit = make_matte<F>(Matte::BurleyExit, V(F(1.0f)));
-  exit.alpha_x = select(dimmed, F(0.5f), F(0.0f));
-  if (!any(dimmed))
-    exit.shape = LobeShape::Lambert;
-  exit.frame = add_frame(bsdf, unit_or(n, bsdf.ns));
+  const uint8_t frame = add_frame(bsdf, unit_or(n, bsdf.ns));
+  Lobe<F> exit = make_lambert<F>(V(F(1.0f)), frame, rules);
+  if (any(dimmed)) {
+    exit.shape = LobeShape::Matte;
+    exit.variant = static_cast<uint8_t>(Matte::BurleyExit);
+    exit.alpha_x = select(dimmed, F(0.5f), F(0.0f));
+  }
   bsdf.add(exit);
 }
 

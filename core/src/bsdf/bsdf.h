@@ -30,7 +30,7 @@ template <class F> struct BsdfSample {
   MaskOf<F> entered = uniform<F>(false);
   V below_color{F(0.0f)}, below_radius{F(0.0f)}; // radius in the user's units
   F below_g{0.0f};
-  WordOf<F> below_method{0u}; // SubsurfaceMethod
+  WordOf<F> below_variant{0u}; // Lobe::variant
 };
 
 // Contract

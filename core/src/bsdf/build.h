@@ -70,11 +70,7 @@ template <class F> LANCER_LANE void add_subsurface_node(Bsdf<F> &bsdf, const Lob
                                  .ior = inputs.ior,
                                  .alpha = old ? F(1.0f) : clamp01(inputs.roughness),
                                  .g = inputs.anisotropy});
-  LobeInputs<F> rest = inputs;
-  rest.color = matt;
-  rest.weight = V(F(1.0f));
-  Lobe<F> lobe = classic_lobe(LobeShape::Lambert, Component::Diffuse, frame, rest);
-  bsdf.add(lobe);
+  bsdf.add(make_lambert<F>(matt, frame, inputs.rules));
 }
 
 // Roughness along the tangent and across it, and their frame.

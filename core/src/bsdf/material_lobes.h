@@ -217,10 +217,12 @@ void add_described(const Material *const *materials, size_t number, const Values
     add_principled(bsdf, inputs, fixed ? ready.principled() : evaluate(*described.principled, read), ready);
 }
 
-// The paths whose hits ask for lobes: the members of the same names of Bsdf. leaving: all of them come from below the surface.
+// The paths whose hits ask for lobes: the members of the same names of Bsdf. leaving: all of them come from below the surface;
+// dimmed: those whose exit Fresnel's weight dims.
 template <class F> struct AskingPaths {
   MaskOf<F> seen_by_camera = uniform<F>(true), after_diffuse = uniform<F>(false);
   bool walks = false, leaving = false;
+  MaskOf<F> dimmed = uniform<F>(false);
   F pixel{0.0f};
 };
 
@@ -233,18 +235,19 @@ LANCER_LANE void find_lobes(const Material *const *materials, const Values &valu
   const MaskOf<F> inside = dot(wo, out_ng) < F(0.0f);
   Vec3<F> ns = select(inside, -out_ns, out_ns);
   const Vec3<F> ng = select(inside, -out_ng, out_ng);
+  const bool finds_lobes = !paths.leaving || material.bends_exits;
   // A bump of the whole surface replaces its normal; nodes return it on the viewer's side.
-  if (material.normal.varies())
+  if (finds_lobes && material.normal.varies())
     ns = unit_or(Vec3<F>(values(material.normal)), ns);
   bsdf.begin(wo, ns, ng, inside, !(material.flags & MaterialFlag::NoBumpCorrection));
   bsdf.seen_by_camera = paths.seen_by_camera;
   bsdf.walks = paths.walks;
   bsdf.after_diffuse = paths.after_diffuse;
   bsdf.pixel = paths.pixel;
-  for (size_t i = 0; i < material.lobes.size() && !(paths.leaving && !material.bends_exits); ++i)
+  for (size_t i = 0; i < material.lobes.size() && finds_lobes; ++i)
     add_described<F>(materials, i, values, hole, bsdf);
   if (paths.leaving)
-    leave_below(bsdf);
+    leave_below(bsdf, material.lobes.empty() ? Rules::Blender45 : material.lobes.front().rules, paths.dimmed);
   bsdf.complete();
 }
 

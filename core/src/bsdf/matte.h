@@ -137,6 +137,16 @@ template <class F> LANCER_LANE Lobe<F> make_matte(Matte variant, const Vec3<F> &
   return lobe;
 }
 
+template <class F> LANCER_LANE Lobe<F> make_lambert(const Vec3<F> &weight, uint8_t frame, Rules rules) {
+  Lobe<F> lobe;
+  lobe.shape = LobeShape::Lambert;
+  lobe.component = Component::Diffuse;
+  lobe.color = lobe.albedo = weight;
+  lobe.frame = frame;
+  lobe.rules = rules;
+  return lobe;
+}
+
 // The diffuse lobe of Principled in 3.x.
 template <class F> LANCER_LANE Lobe<F> make_burley(const Vec3<F> &weight, F roughness) {
   Lobe<F> lobe = make_matte<F>(Matte::Burley, weight);

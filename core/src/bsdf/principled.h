@@ -212,20 +212,16 @@ void add_layers(Bsdf<F> &bsdf, const LobeInputs<F> &inputs, const PrincipledInpu
         const V inner = clamp01(color);
         const bool skin = (in.subsurface_option & kMethodBits) == static_cast<uint32_t>(SubsurfaceMethod::Skin);
         const uint8_t entry = add_frame(bsdf, select(below > kLeastLayer, n_reflect, none));
-        Lobe<F> matt =
-            make_matte<F>(Matte::Burley, add_subsurface(bsdf, entry,
-                                                        {.option = in.subsurface_option,
-                                                         .rules = in.rules,
-                                                         .weight = select(below > kLeastLayer, below * (inner * weight), none),
-                                                         .color = inner,
-                                                         .radius = in.subsurface_radius,
-                                                         .ior = skin ? in.subsurface_ior : plastic_ior(in, f0),
-                                                         .alpha = alpha_of(in.roughness),
-                                                         .g = in.subsurface_anisotropy}));
-        matt.shape = LobeShape::Lambert;
-        matt.frame = entry;
-        matt.rules = in.rules;
-        bsdf.add(matt);
+        const V matt = add_subsurface(bsdf, entry,
+                                      {.option = in.subsurface_option,
+                                       .rules = in.rules,
+                                       .weight = select(below > kLeastLayer, below * (inner * weight), none),
+                                       .color = inner,
+                                       .radius = in.subsurface_radius,
+                                       .ior = skin ? in.subsurface_ior : plastic_ior(in, f0),
+                                       .alpha = alpha_of(in.roughness),
+                                       .g = in.subsurface_anisotropy});
+        bsdf.add(make_lambert<F>(matt, entry, in.rules));
         weight = select(below > kLeastLayer, weight * (1.0f - below), weight);
       }
       lobe = make_diffuse(color * weight, color, clamp01(in.diffuse_roughness), in.option == 1, cos_in(bsdf, frame));

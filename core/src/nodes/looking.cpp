@@ -1,7 +1,7 @@
 #include "nodes/looking.h"
 
 #include "bsdf/lobe.h"
-#include "sampling/elementary.h"
+#include "sampling/axis_probe.h"
 #include "sampling/warp.h"
 
 #include <algorithm>
@@ -75,33 +75,20 @@ double cubic_distance(double u) {
 glm::vec3 bevelled_normal(NodeRays &rays, const LookingPlace &at, double radius, uint32_t count, uint32_t node) {
   const LookingNumbers numbers(at, count, node);
   const Frame frame(at.surface.ng);
-  const glm::dvec3 axes[3] = {glm::dvec3(frame.n), glm::dvec3(frame.t), glm::dvec3(frame.b)};
-  constexpr double share[3] = {0.5, 0.25, 0.25};
   glm::dvec3 sum(0.0);
   for (uint32_t i = 0; i < count; ++i) {
     // Choose an axis, and a point of the disk across the axis.
-    glm::vec2 u = numbers.of(i);
-    const int axis = u.x < 0.5f ? 0 : u.x < 0.75f ? 1 : 2;
-    u.x = axis == 0 ? 2.0f * u.x : 4.0f * (u.x - (axis == 1 ? 0.5f : 0.75f));
-    const double r = radius * cubic_distance(double(u.y)), height = std::sqrt(std::max(radius * radius - r * r, 0.0));
-    const SinCos<float> turn = sin_cos_turn(u.x);
-    const glm::dvec3 &up = axes[axis], &across = axes[(axis + 1) % 3], &along = axes[(axis + 2) % 3];
+    const glm::vec2 u = numbers.of(i);
+    const AxisProbe probe(glm::dvec3(frame.n), glm::dvec3(frame.t), glm::dvec3(frame.b), u.x);
+    const double r = radius * cubic_distance(double(u.y)), drawn = cubic_weight(radius, r);
     Ray ray;
-    ray.o = at.surface.p + height * up + r * (double(turn.cos) * across + double(turn.sin) * along);
-    ray.d = -up;
-    ray.tmax = 2.0 * height;
-    // Weigh each point of the object on the way by the densities of all axes.
+    probe.place(at.surface.p, r, radius, ray.o, ray.d, ray.tmax);
+    // Weigh each point of the object on the way by its profile and by the densities of all axes.
     for (const Hit &hit : rays.all(ray, at.surface.instance)) {
       const Surface met = rays.surface(ray, hit);
-      double squares = 0.0;
-      for (int k = 0; k < 3; ++k) {
-        const double density = share[k] * glm::dot(axes[k], glm::dvec3(met.ng));
-        squares += density * density;
-      }
-      const double density = share[axis] * std::abs(glm::dot(up, glm::dvec3(met.ng)));
-      const double drawn = cubic_weight(radius, r), real = cubic_weight(radius, glm::length(met.p - at.surface.p));
-      if (squares > 0.0 && drawn > 0.0)
-        sum += density / squares * (real / drawn) * glm::dvec3(met.ns);
+      const double real = cubic_weight(radius, glm::length(met.p - at.surface.p));
+      if (drawn > 0.0)
+        sum += probe.weight(glm::dvec3(met.ng)) * (real / drawn) * glm::dvec3(met.ns);
     }
   }
   const double length = glm::length(sum);

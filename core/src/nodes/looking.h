@@ -18,7 +18,7 @@ public:
   // Returns how many rays meet nothing.
   virtual uint32_t open(std::span<const Ray> rays, uint32_t instance) = 0;
   virtual Hit closest(const Ray &ray, uint32_t instance) = 0;
-  // Returns the hits with an instance, each primitive once, valid until the next call.
+  // Returns the hits with an instance, those at one distance as one, valid until the next call.
   virtual std::span<const Hit> all(const Ray &ray, uint32_t instance) = 0;
   virtual Surface surface(const Ray &ray, const Hit &hit) const = 0;
 };

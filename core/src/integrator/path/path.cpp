@@ -36,6 +36,9 @@ void PathIntegrator::run(std::span<const SampleAddress> addresses, std::span<Sam
 
 void PathIntegrator::start(std::span<const SampleAddress> addresses, std::span<SampleResult> results) {
   queue_.clear();
+  // A batch that was cancelled may have left walks.
+  below_.clear();
+  walks_.clear();
   last_bounces_.begin();
   camera_.start(addresses, film_.passes.wanted(), results, [&](uint32_t sample, const Sampler &sampler) -> Ray & {
     queue_.paths.emplace_back(sampler, sample);
@@ -71,7 +74,12 @@ void PathIntegrator::shade() {
     else if (film_.miss(queue_.paths[i]) && queue_.paths[i].shows_light(scene_.world.hidden_from))
       missed_.push_back(i);
   add_environment();
-  // Shade the hits in blocks, one class of materials after the other.
+  shade_queued();
+  leave();
+}
+
+// Shades the hits of the queues in blocks, one class of materials after the other.
+void PathIntegrator::shade_queued() {
   vertices_ += queues_.size();
   queues_.each([&](std::span<const ShadingQueues::Queued> met) {
     for (size_t i = 0; i < met.size(); ++i) {
@@ -83,7 +91,6 @@ void PathIntegrator::shade() {
     }
     shade_block();
   });
-  leave();
 }
 
 // Adds the lamps on the way of each ray, with the weight of multiple importance sampling.
@@ -128,7 +135,7 @@ void PathIntegrator::put_in_lane(size_t number, const Material &material) {
   const uint32_t lane = surface_.add(queue_.rays[number], hit, material, ends);
   if (walk_) {
     const double way = path.length + hit.t * glm::length(queue_.rays[number].d);
-    surface_.place_path(lane, path.after_diffuse, path.leaving, surface_.pixel_width(way));
+    surface_.place_path(lane, path.after_diffuse, path.leaving, path.dimmed, surface_.pixel_width(way));
   }
   path_[lane] = number;
   leader_[lane] = 0;

@@ -64,6 +64,7 @@ private:
   void start(std::span<const SampleAddress> addresses, std::span<SampleResult> results);
   void find_hits();
   void shade();
+  void shade_queued();
   void add_lamps();
   void add_environment();
   void put_in_lane(size_t number, const Material &material);

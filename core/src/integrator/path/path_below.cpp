@@ -1,12 +1,15 @@
 // Paths below surfaces: where they enter, and where they leave.
+#include "bsdf/subsurface_lobe.h"
 #include "integrator/path/path.h"
+
+#include <algorithm>
 
 namespace lancer {
 
 namespace {
 
-// Number of walks below surfaces that fill the lanes of the stage.
-constexpr size_t kWorthWalking = 512;
+// The unit of a walk's throughput, which ends the walk where little of it is left.
+float largest(const glm::vec3 &beta) { return std::max({std::abs(beta.x), std::abs(beta.y), std::abs(beta.z)}); }
 
 } // namespace
 
@@ -14,21 +17,24 @@ constexpr size_t kWorthWalking = 512;
 void PathIntegrator::enter(uint32_t lane, uint32_t branch) {
   const ScatterBlock &block = scatter_.next();
   const Path &path = path_of(lane);
+  const glm::vec3 beta = get(block.beta, lane);
+  if (beta == glm::vec3(0.0f))
+    return;
   Path &next = branch_off(below_, lane, branch);
-  next.enter(get(block.beta, lane));
+  next.enter(beta, (block.below_variant[lane] & kDimmedExit) != 0);
   next.length += surface_.distance(lane);
   film_.set_shares(path, next, block.share, lane);
   const glm::vec3 outwards = get(surface_.surfaces().ng, lane), ng = get(surface_.lobes().ng, lane);
   const Hit &hit = surface_.hit(lane);
   Walk &walk = walks_.emplace_back();
-  walk.method = static_cast<SubsurfaceMethod>(block.below_method[lane]);
+  walk.method = static_cast<SubsurfaceMethod>(block.below_variant[lane] & kMethodBits);
   walk.ray.o = get(surface_.surfaces().p, lane);
   walk.ray.d = glm::dvec3(get(block.wi, lane));
   walk.ray.skip_instance = hit.instance;
   walk.ray.skip_primitive = hit.primitive;
   walk.n = walk.method == SubsurfaceMethod::Burley ? ng : get(surface_.lobes().ns, lane);
-  walk.inside = glm::dot(outwards, ng) < 0.0f;
-  walk.beta = next.beta;
+  walk.from_behind = glm::dot(outwards, ng) < 0.0f;
+  walk.beta = beta / largest(beta);
   walk.color = get(block.below_color, lane);
   walk.radius = get(block.below_radius, lane) * float(scene_.normalisation.scale);
   walk.g = block.below_g[lane];
@@ -40,9 +46,9 @@ void PathIntegrator::enter(uint32_t lane, uint32_t branch) {
   walk.instance = hit.instance;
 }
 
-// Walks below surfaces, and shades the places where paths leave them. Few walks wait for others, as long as there are paths.
+// Walks below surfaces, and shades the places where paths leave them.
 void PathIntegrator::leave() {
-  if (below_.empty() || (below_.size() < kWorthWalking && !next_.paths.empty()))
+  if (below_.empty())
     return;
   counts_.bounce += walk_->walk(walks_);
   const size_t first = queue_.paths.size();
@@ -50,8 +56,9 @@ void PathIntegrator::leave() {
     if (!walks_[i].hit.valid())
       continue;
     Path &path = queue_.paths.emplace_back(below_[i]);
-    path.beta = walks_[i].beta;
+    path.beta = largest(path.beta) * walks_[i].beta;
     queue_.rays.push_back(walks_[i].ray);
+    queue_.rays.back().kinds = path.kinds;
     queue_.from.push_back({});
     hits_.push_back(walks_[i].hit);
   }
@@ -60,15 +67,7 @@ void PathIntegrator::leave() {
   queues_.begin();
   for (size_t i = first; i < queue_.paths.size(); ++i)
     queues_.add(i, hits_[i]);
-  vertices_ += queues_.size();
-  queues_.each([&](std::span<const ShadingQueues::Queued> met) {
-    for (const ShadingQueues::Queued &queued : met) {
-      put_in_lane(queued.number, *queued.material);
-      if (surface_.full())
-        shade_block();
-    }
-    shade_block();
-  });
+  shade_queued();
 }
 
 } // namespace lancer

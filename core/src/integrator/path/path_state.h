@@ -28,6 +28,7 @@ struct Path {
   bool last = false;          // the path ends at the next surface
   uint32_t entries = 0;       // walks below surfaces so far
   bool leaving = false;       // the path is at the end of a walk
+  bool dimmed = false;        // Principled of Blender 3 has sent it below, whose exit Fresnel's weight dims
   bool after_diffuse = false; // a diffuse lobe has scattered the path
   double length = 0.0;        // of the whole path, normalised units; set by PATH
 
@@ -61,12 +62,13 @@ struct Path {
     story.scatter(is_diffuse, transmitted, singular);
   }
   // Sends the path below the surface. A walk is no scattering that counts.
-  void enter(const glm::vec3 &throughput) {
+  void enter(const glm::vec3 &throughput, bool dimmed_exit) {
     beta = throughput;
     kinds &= ~uint32_t(RayKind::Camera);
-    story.kinds &= uint8_t(~uint32_t(RayKind::Camera));
+    story.kinds &= uint16_t(~uint32_t(RayKind::Camera));
     ++entries;
     leaving = true;
+    dimmed = dimmed_exit;
     in_view = false;
   }
   // pass: probability of passing straight through.
@@ -80,7 +82,7 @@ struct Path {
     return std::min(sampler.get1(dimension) / std::min(pass, 1.0f), 1.0f - 0x1p-24f);
   }
   // Returns the dimension of the numbers of nodes' rays at the path's current surface.
-  uint32_t nodes_dimension() const { return kDimensionNodes + 2 * (scatterings * kMaxCrossings + crossings); }
+  uint32_t nodes_dimension() const { return kDimensionNodes + 2 * ((scatterings + entries) * kMaxCrossings + crossings); }
   // Returns the first dimension of the path's current vertex.
   uint32_t vertex_dimension() const { return kDimensionVertex + (scatterings + entries) * kVertexStride; }
   // Whether the path belongs to the first sample of its pixel. paths: number of paths after a split.

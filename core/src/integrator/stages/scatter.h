@@ -19,7 +19,7 @@ struct alignas(64) ScatterBlock {
   Floats share[2][3];   // diffuse and glossy share of the sample's weight, where shares are wanted
   // Parameters of walks below the surface, in lanes that enter it: see BsdfSample.
   Floats below_color[3], below_radius[3], below_g;
-  Words below_method;
+  Words below_variant;
   // Each of the following is one bit per lane.
   uint32_t sampled = 0;     // there is a next direction
   uint32_t diffuse = 0;     // the next ray is a diffuse one, as BsdfSample::diffuse says

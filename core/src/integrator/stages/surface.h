@@ -44,12 +44,12 @@ struct alignas(64) MaterialBlock {
   uint32_t holes = 0;                              // bits of lanes: lobes are hidden by a hole; by cut_holdouts()
   uint32_t ends = 0;                               // bits of lanes: the surface scatters no light
   uint32_t seen_by_camera = 0;                     // bits of lanes, by add()
-  // Paths below surfaces: whether PATH sends any; by place_path(): whether all lanes come from below, bits of lanes, and the
-  // width of a pixel, user's units.
-  bool walks = false, leaving = false;
-  uint32_t after_diffuse = 0;
-  Floats pixel;
-  bool shares = false; // diffuse and glossy shares of light are wanted
+  bool walks = false;                              // surfaces may send paths below them; by walk_below()
+  bool leaving = false;                            // all lanes come from below; by place_path()
+  uint32_t after_diffuse = 0;                      // bits of lanes: a diffuse lobe has scattered the path; by place_path()
+  uint32_t dimmed = 0;                             // bits of lanes: Fresnel's weight dims the exit from below; by place_path()
+  Floats pixel;                                    // width of a pixel there, user's units; by place_path()
+  bool shares = false;                             // diffuse and glossy shares of light are wanted
 };
 
 // The lobes, with normals and emission on the viewer's side; by build_lobes().
@@ -108,9 +108,11 @@ public:
   // Lets surfaces send paths below them.
   void walk_below() { materials_.walks = true; }
   // Describes the path of a lane to lobes that send paths below: whether a diffuse lobe has scattered it, whether it comes from
-  // below, as all of its block then do, and the width of a pixel where it meets the surface, in the user's units.
-  void place_path(uint32_t lane, bool after_diffuse, bool leaving, float pixel) {
+  // below, as all of its block then do, whether Fresnel's weight dims its exit, and the width of a pixel where it meets the
+  // surface, in the user's units.
+  void place_path(uint32_t lane, bool after_diffuse, bool leaving, bool dimmed, float pixel) {
     materials_.after_diffuse |= uint32_t{after_diffuse} << lane;
+    materials_.dimmed |= uint32_t{dimmed} << lane;
     materials_.leaving = leaving;
     materials_.pixel[lane] = pixel;
   }
@@ -129,7 +131,7 @@ public:
     run_nodes(views);
   }
   // Returns the width of a pixel at the end of a path of length `way`, in the user's units.
-  float pixel_width(double way) const { return float(2.0 * (cone_.base + way * cone_.spread) / scene_.normalisation.scale); }
+  float pixel_width(double way) const { return float((cone_.base + way * cone_.spread) / scene_.normalisation.scale); }
   // Returns the view of a lane at the end of a path of length `way`.
   View view(uint32_t lane, double way, const LightPath<float> &path) const {
     return {.wo = get(surfaces_.wo, lane), .footprint = float(cone_.base + way * cone_.spread), .path = path};

@@ -82,6 +82,7 @@ void build(const SurfaceBlock &surfaces, const MaterialBlock &materials, LobeBlo
                    .after_diffuse = some(materials.after_diffuse, first),
                    .walks = materials.walks,
                    .leaving = materials.leaving,
+                   .dimmed = some(materials.dimmed, first),
                    .pixel = load(materials.pixel + first)});
     store3(lobes.ns, first, bsdf.ns);
     store3(lobes.ng, first, bsdf.ng);

@@ -1,8 +1,5 @@
 #include "integrator/stages/walk.h"
 
-#include "bsdf/subsurface.h"
-#include "sampling/sobol.h"
-
 #include <algorithm>
 #include <bit>
 #include <limits>
@@ -20,19 +17,7 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 const WalkKernel &walk_kernel() { return LANCER_CHOSEN_SHADING_KERNEL(walk_kernel); }
 
-WalkStage::WalkStage(const Scene &scene)
-    : HitFilter(nullptr), scene_(scene), kernel_(walk_kernel()), all_instances_(scene.geometry.instances.size(), 1) {
-  instances = all_instances_.data();
-}
-
-bool WalkStage::counts(size_t ray, const Hit &hit) {
-  if (hit.instance != instance_of_[ray])
-    return false;
-  if (!collects_)
-    return true;
-  crossed_[ray].push_back(hit);
-  return false;
-}
+WalkStage::WalkStage(const Scene &scene) : kernel_(walk_kernel()), own_(scene), profile_(scene) {}
 
 // lane: over all blocks.
 void WalkStage::load(const Walk &walk, size_t number, uint32_t lane) {
@@ -54,12 +39,12 @@ void WalkStage::load(const Walk &walk, size_t number, uint32_t lane) {
 
 // Fills the free lanes with the next walks.
 void WalkStage::fill(std::span<const Walk> walks, size_t &next) {
-  for (size_t number = 0; number < blocks_.size() && next < walks.size(); ++number) {
+  for (size_t number = 0; number < blocks_.size() && next < at_random_.size(); ++number) {
     WalkBlock &block = blocks_[number];
     uint32_t fresh = 0;
-    for (uint32_t lane = 0; lane < kBlockLanes && next < walks.size(); ++lane)
+    for (uint32_t lane = 0; lane < kBlockLanes && next < at_random_.size(); ++lane)
       if (!(block.walking >> lane & 1)) {
-        load(walks[next], next, uint32_t(number * kBlockLanes + lane));
+        load(walks[at_random_[next]], at_random_[next], uint32_t(number * kBlockLanes + lane));
         fresh |= 1u << lane;
         ++next;
       }
@@ -133,29 +118,30 @@ void WalkStage::look(std::span<const Walk> walks) {
     });
   }
   hits_.assign(rays_.size(), {});
-  scene_.accelerator->closest_hit(rays_, hits_, *this);
+  own_.closest(rays_, instance_of_, hits_);
   for (size_t i = 0; i < rays_.size(); ++i)
     blocks_[lane_of_[i] / kBlockLanes].met[lane_of_[i] % kBlockLanes] = hits_[i].valid() ? hits_[i].t : kInfinite;
 }
 
 uint64_t WalkStage::walk(std::span<Walk> walks) {
-  const auto profiles = std::stable_partition(walks.begin(), walks.end(),
-                                              [](const Walk &walk) { return walk.method != SubsurfaceMethod::Burley; });
-  uint64_t count = leave_by_profile({profiles, walks.end()});
-  const std::span<Walk> random(walks.begin(), profiles);
-  blocks_.resize(std::min(kBlocks, (random.size() + kBlockLanes - 1) / kBlockLanes));
+  by_profile_.clear();
+  at_random_.clear();
+  for (size_t number = 0; number < walks.size(); ++number)
+    (walks[number].method == SubsurfaceMethod::Burley ? by_profile_ : at_random_).push_back(number);
+  uint64_t count = profile_.leave(walks, by_profile_);
+  blocks_.resize(std::min(kBlocks, (at_random_.size() + kBlockLanes - 1) / kBlockLanes));
   walk_of_.resize(blocks_.size() * kBlockLanes);
   for (WalkBlock &block : blocks_)
     block.walking = 0;
   for (size_t next = 0;;) {
-    if (next < random.size())
-      fill(random, next);
+    if (next < at_random_.size())
+      fill(walks, next);
     else
       close_ranks();
     for (WalkBlock &block : blocks_)
       if (block.walking != 0)
         kernel_.step(block);
-    look(random);
+    look(walks);
     if (rays_.empty())
       return count;
     count += rays_.size();
@@ -164,132 +150,20 @@ uint64_t WalkStage::walk(std::span<Walk> walks) {
       if (block.walking != 0)
         kernel_.advance(block);
     }
+    // End the walks that have reached the surface: the path meets it as if it came from outside.
     for (size_t i = 0; i < rays_.size(); ++i) {
       const WalkBlock &block = blocks_[lane_of_[i] / kBlockLanes];
       const uint32_t lane = lane_of_[i] % kBlockLanes;
-      if (block.left >> lane & 1)
-        end(random[walk_of_[lane_of_[i]]], block, lane, hits_[i], rays_[i]);
+      if (!(block.left >> lane & 1))
+        continue;
+      Walk &walk = walks[walk_of_[lane_of_[i]]];
+      walk.hit = hits_[i];
+      walk.beta = get(block.throughput, lane);
+      walk.ray = rays_[i];
+      walk.ray.o += 2.0 * walk.hit.t * walk.ray.d;
+      walk.ray.d = -walk.ray.d;
     }
   }
-}
-
-// Ends a walk at the hit of a ray from inside: the path meets the surface as if it came from outside.
-void WalkStage::end(Walk &walk, const WalkBlock &block, uint32_t lane, const Hit &hit, const Ray &ray) {
-  walk.hit = hit;
-  walk.beta = get(block.throughput, lane);
-  walk.ray = ray;
-  walk.ray.o = ray.o + 2.0 * hit.t * ray.d;
-  walk.ray.d = -ray.d;
-}
-
-// Leaves by Burley's profile: along one of three axes through a point of a disk around the entry, at one of the surfaces met.
-uint64_t WalkStage::leave_by_profile(std::span<Walk> walks) {
-  struct Probe {
-    Frame<float> frame; // n is the axis
-    float share[3];     // of the axes n, t, b
-    float r, height;
-  };
-  if (walks.empty())
-    return 0;
-  std::vector<Probe> probes;
-  rays_.clear();
-  instance_of_.clear();
-  const auto number = [](const Walk &walk, uint32_t which) { return float(hash_combine(walk.key, which) >> 8) * 0x1p-24f; };
-  for (const Walk &walk : walks) {
-    Probe probe;
-    const Frame<float> at(walk.n);
-    float u = walk.u_distance;
-    const float v = walk.u_channel;
-    // Half of the rays go along the normal, a quarter along each tangent.
-    const int axis = u < 0.5f ? 0 : u < 0.75f ? 1 : 2;
-    u = axis == 0 ? 2.0f * u : axis == 1 ? 4.0f * (u - 0.5f) : 4.0f * (u - 0.75f);
-    probe.frame = at;
-    if (axis == 1)
-      std::swap(probe.frame.n, probe.frame.t);
-    else if (axis == 2)
-      std::swap(probe.frame.n, probe.frame.b);
-    std::fill_n(probe.share, 3, 0.25f);
-    probe.share[axis] = 0.5f;
-    // Choose one of the channels that have a radius, and a distance by its profile.
-    float channels = 0.0f;
-    for (int i = 0; i < 3; ++i)
-      channels += walk.radius[i] > 0.0f ? 1.0f : 0.0f;
-    float w = v * channels, radius = 0.0f;
-    for (int i = 0; i < 3 && channels > 0.0f; ++i)
-      if (walk.radius[i] > 0.0f) {
-        radius = walk.radius[i];
-        if (w < 1.0f)
-          break;
-        w -= 1.0f;
-      }
-    probe.r = burley_radius(std::min(w, 1.0f)) * radius;
-    const float reach = kBurleyReach * radius;
-    probe.height = std::sqrt(std::max(0.0f, (reach - probe.r) * (reach + probe.r)));
-    const SinCos<float> turn = sin_cos_turn(u);
-    Ray &ray = rays_.emplace_back();
-    ray.o = walk.ray.o + glm::dvec3(probe.frame.n) * double(probe.height) +
-            double(probe.r) * (double(turn.cos) * glm::dvec3(probe.frame.t) + double(turn.sin) * glm::dvec3(probe.frame.b));
-    ray.d = -glm::dvec3(probe.frame.n);
-    ray.tmax = 2.0 * double(probe.height);
-    instance_of_.push_back(walk.instance);
-    probes.push_back(probe);
-  }
-  crossed_.assign(rays_.size(), {});
-  occluded_.assign(rays_.size(), 0);
-  collects_ = true;
-  scene_.accelerator->any_hit(rays_, occluded_, *this);
-  collects_ = false;
-  for (size_t i = 0; i < walks.size(); ++i) {
-    Walk &walk = walks[i];
-    std::vector<Hit> &hits = crossed_[i];
-    std::sort(hits.begin(), hits.end(), [](const Hit &a, const Hit &b) { return closer(a.t, a.instance, a.primitive, b); });
-    const auto same = [](const Hit &a, const Hit &b) { return a.t == b.t; };
-    hits.erase(std::unique(hits.begin(), hits.end(), same), hits.end());
-    // Weight each surface by the profile at its distance, over the densities of all axes.
-    std::vector<glm::vec3> weights;
-    float sum = 0.0f;
-    for (const Hit &hit : hits) {
-      const Surface surface = surface_at(scene_.geometry, scene_.slots, rays_[i], hit);
-      const float r = float(glm::length(surface.p - walk.ray.o));
-      float pdf[3], squares = 0.0f;
-      const glm::vec3 axes[] = {probes[i].frame.n, probes[i].frame.t, probes[i].frame.b};
-      for (int k = 0; k < 3; ++k) {
-        pdf[k] = probes[i].share[k] * std::abs(glm::dot(axes[k], surface.ng));
-        squares += pdf[k] * pdf[k];
-      }
-      float mean = 0.0f, channels = 0.0f;
-      glm::vec3 profile(0.0f);
-      for (int k = 0; k < 3; ++k)
-        if (walk.radius[k] > 0.0f) {
-          profile[k] = burley_profile(walk.radius[k], r);
-          mean += burley_profile(walk.radius[k], probes[i].r);
-          channels += 1.0f;
-        }
-      const float scale = mean > 0.0f && squares > 0.0f ? pdf[0] / squares * channels / mean : 0.0f;
-      weights.push_back(profile * scale);
-      sum += (weights.back().x + weights.back().y + weights.back().z) / 3.0f;
-    }
-    // Choose one of them by its weight.
-    float u = number(walk, 0) * sum;
-    for (size_t k = 0; k < hits.size(); ++k) {
-      const float weight = (weights[k].x + weights[k].y + weights[k].z) / 3.0f;
-      if (weight > 0.0f && (u < weight || k + 1 == hits.size())) {
-        walk.hit = hits[k];
-        walk.beta *= weights[k] * (sum / weight);
-        walk.ray = rays_[i];
-        // Come from the outside of the surface.
-        const Surface surface = surface_at(scene_.geometry, scene_.slots, rays_[i], hits[k]);
-        const bool behind = glm::dot(glm::vec3(rays_[i].d), surface.ng) > 0.0f;
-        if (behind != walk.inside) {
-          walk.ray.o += 2.0 * hits[k].t * walk.ray.d;
-          walk.ray.d = -walk.ray.d;
-        }
-        break;
-      }
-      u -= weight;
-    }
-  }
-  return rays_.size();
 }
 
 } // namespace lancer
