@@ -29,7 +29,7 @@ template <class F> struct BsdfSample {
   // Light enters the surface along wi, which is a single direction, to walk below it; the following describe the walk.
   MaskOf<F> entered = uniform<F>(false);
   V below_color{F(0.0f)}, below_radius{F(0.0f)}; // radius in the user's units
-  F below_g{0.0f};
+  F below_g{0.0f}, below_ior{1.4f};
   WordOf<F> below_variant{0u}; // Lobe::variant
 };
 

@@ -173,6 +173,7 @@ template <class F> BsdfSample<F> Bsdf<F>::sample(F u_lobe, F u, F v) const {
       result.below_color = select(mine, lobe.f90, result.below_color);
       result.below_radius = select(mine, lobe.f0, result.below_radius);
       result.below_g = select(mine, lobe.shininess, result.below_g);
+      result.below_ior = select(mine, lobe.ior, result.below_ior);
       result.below_variant = select(mine, numbered(static_cast<int>(lobe.variant)), result.below_variant);
     } else if (lobe.component == Component::Diffuse || is_matte(lobe, Matte::Velvet)) {
       result.diffuse = result.diffuse | mine;

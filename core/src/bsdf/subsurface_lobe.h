@@ -33,7 +33,7 @@ template <class F> LANCER_LANE F usable_anisotropy(SubsurfaceMethod method, Rule
   return min(max(g, F(newer ? -0.99f : 0.0f)), F(newer && method == SubsurfaceMethod::RandomWalk ? 0.99f : 0.9f));
 }
 
-// The lobe keeps the colour of the surface in f90, the radius of the walk in f0, and the mean cosine in shininess.
+// The lobe keeps the colour of the surface in f90, the radius in f0, and the mean cosine in shininess.
 template <class F> LANCER_LANE Lobe<F> make_subsurface(const SubsurfaceInputs<F> &in, uint8_t frame) {
   const auto method = static_cast<SubsurfaceMethod>(in.option & kMethodBits);
   Lobe<F> lobe;
@@ -46,7 +46,7 @@ template <class F> LANCER_LANE Lobe<F> make_subsurface(const SubsurfaceInputs<F>
   lobe.color = lobe.albedo = in.weight;
   lobe.f90 = in.color;
   lobe.ior = min(max(in.ior, F(1.01f)), F(3.8f));
-  lobe.f0 = walking_radius(method, in.radius, in.color, lobe.ior);
+  lobe.f0 = in.radius;
   lobe.alpha_x = method == SubsurfaceMethod::Skin ? F(1.0f) : in.alpha;
   lobe.shininess = usable_anisotropy(method, in.rules, in.g);
   return lobe;

@@ -151,6 +151,7 @@ void report_all(Bsdf<F> &bsdf, const Place *of, Report &add) {
     add("sample: below", sample.below_color);
     add("sample: below", sample.below_radius);
     add("sample: below", sample.below_g);
+    add("sample: below", sample.below_ior);
     add("sample: below", sample.below_variant);
     report_value("eval of what was drawn", bsdf.eval(sample.wi), add);
     report_value("eval_lit of what was drawn", bsdf.eval_lit(sample.wi), add);

@@ -38,6 +38,7 @@ void PathIntegrator::enter(uint32_t lane, uint32_t branch) {
   walk.color = get(block.below_color, lane);
   walk.radius = get(block.below_radius, lane) * float(scene_.normalisation.scale);
   walk.g = block.below_g[lane];
+  walk.ior = block.below_ior[lane];
   // The numbers of a light sample at this vertex serve the walk.
   const uint32_t dimension = path.vertex_dimension();
   walk.u_channel = next.sampler.get1(dimension + kVertexLightChoice);

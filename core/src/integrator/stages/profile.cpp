@@ -30,21 +30,22 @@ uint64_t ProfileStage::leave(std::span<Walk> walks, std::span<const size_t> numb
 }
 
 void ProfileStage::send(const Walk &walk) {
+  const glm::vec3 radii = walking_radius(walk.method, walk.radius, walk.color, walk.ior);
   // Choose one of the channels that have a radius, and a distance by its profile.
   float channels = 0.0f;
   for (int i = 0; i < 3; ++i)
-    channels += walk.radius[i] > 0.0f ? 1.0f : 0.0f;
+    channels += radii[i] > 0.0f ? 1.0f : 0.0f;
   float u = walk.u_channel * channels, radius = 0.0f;
   for (int i = 0; i < 3; ++i)
-    if (walk.radius[i] > 0.0f) {
-      radius = walk.radius[i];
+    if (radii[i] > 0.0f) {
+      radius = radii[i];
       if (u < 1.0f)
         break;
       u -= 1.0f;
     }
   const Frame<float> at(walk.n);
   const AxisProbe axes(glm::dvec3(at.n), glm::dvec3(at.t), glm::dvec3(at.b), walk.u_distance);
-  const Probe &probe = probes_.emplace_back(axes, burley_radius(std::min(u, 1.0f)) * radius);
+  const Probe &probe = probes_.emplace_back(axes, radii, burley_radius(std::min(u, 1.0f)) * radius);
   Ray &ray = rays_.emplace_back();
   axes.place(walk.ray.o, double(probe.r), double(kBurleyReach) * double(radius), ray.o, ray.d, ray.tmax);
   instance_of_.push_back(walk.instance);
@@ -56,9 +57,9 @@ glm::vec3 ProfileStage::weight(const Walk &walk, const Probe &probe, const Surfa
   float density = 0.0f, channels = 0.0f;
   glm::vec3 profile(0.0f);
   for (int k = 0; k < 3; ++k)
-    if (walk.radius[k] > 0.0f) {
-      profile[k] = burley_profile(walk.radius[k], r);
-      density += burley_profile(walk.radius[k], probe.r);
+    if (probe.radius[k] > 0.0f) {
+      profile[k] = burley_profile(probe.radius[k], r);
+      density += burley_profile(probe.radius[k], probe.r);
       channels += 1.0f;
     }
   const auto seen = float(probe.axes.weight(glm::dvec3(surface.ng)));

@@ -18,9 +18,10 @@ public:
   uint64_t leave(std::span<Walk> walks, std::span<const size_t> numbers);
 
 private:
-  // A ray through a point of a disk around the entry, and the distance of the point.
+  // A ray through a point of a disk around the entry: the radii of the profile, and the distance of the point.
   struct Probe {
     AxisProbe axes;
+    glm::vec3 radius;
     float r;
   };
 

@@ -18,7 +18,7 @@ struct alignas(64) ScatterBlock {
   Floats alpha2;        // alpha_x alpha_y of the sampled lobe, 0 for a single direction
   Floats share[2][3];   // diffuse and glossy share of the sample's weight, where shares are wanted
   // Parameters of walks below the surface, in lanes that enter it: see BsdfSample.
-  Floats below_color[3], below_radius[3], below_g;
+  Floats below_color[3], below_radius[3], below_g, below_ior;
   Words below_variant;
   // Each of the following is one bit per lane.
   uint32_t sampled = 0;     // there is a next direction

@@ -38,6 +38,7 @@ void scatter(const ScatteringVertices &vertices, ScatterBlock &next) {
       store3(next.below_color, first, sample.below_color);
       store3(next.below_radius, first, sample.below_radius);
       store(next.below_g + first, sample.below_g);
+      store(next.below_ior + first, sample.below_ior);
       store(next.below_variant + first, sample.below_variant);
     }
   }

@@ -19,41 +19,6 @@ const WalkKernel &walk_kernel() { return LANCER_CHOSEN_SHADING_KERNEL(walk_kerne
 
 WalkStage::WalkStage(const Scene &scene) : kernel_(walk_kernel()), own_(scene), profile_(scene) {}
 
-// lane: over all blocks.
-void WalkStage::load(const Walk &walk, size_t number, uint32_t lane) {
-  walk_of_[lane] = number;
-  WalkBlock &block = blocks_[lane / kBlockLanes];
-  const uint32_t at = lane % kBlockLanes;
-  put(walk.ray.o, block.p, at);
-  put(glm::vec3(walk.ray.d), block.d, at);
-  put(walk.n, block.n, at);
-  put(walk.beta, block.beta, at);
-  put(walk.color, block.color, at);
-  put(walk.radius, block.radius, at);
-  block.g[at] = walk.g;
-  block.method[at] = uint32_t(walk.method);
-  block.u_channel[at] = walk.u_channel;
-  block.u_distance[at] = walk.u_distance;
-  block.key[at] = walk.key;
-}
-
-// Fills the free lanes with the next walks.
-void WalkStage::fill(std::span<const Walk> walks, size_t &next) {
-  for (size_t number = 0; number < blocks_.size() && next < at_random_.size(); ++number) {
-    WalkBlock &block = blocks_[number];
-    uint32_t fresh = 0;
-    for (uint32_t lane = 0; lane < kBlockLanes && next < at_random_.size(); ++lane)
-      if (!(block.walking >> lane & 1)) {
-        load(walks[at_random_[next]], at_random_[next], uint32_t(number * kBlockLanes + lane));
-        fresh |= 1u << lane;
-        ++next;
-      }
-    if (fresh != 0)
-      kernel_.begin(block, fresh);
-    block.walking |= fresh;
-  }
-}
-
 namespace {
 
 void move_lane(WalkBlock &block, uint32_t to, const WalkBlock &other, uint32_t from) {
@@ -63,14 +28,58 @@ void move_lane(WalkBlock &block, uint32_t to, const WalkBlock &other, uint32_t f
          {&WalkBlock::d, &WalkBlock::n, &WalkBlock::sigma_t, &WalkBlock::sigma_s, &WalkBlock::light, &WalkBlock::densities})
       (block.*member)[axis][to] = (other.*member)[axis][from];
   }
-  for (const auto member :
-       {&WalkBlock::depth, &WalkBlock::g, &WalkBlock::guided, &WalkBlock::length, &WalkBlock::log_length, &WalkBlock::opposite})
+  for (const auto member : {&WalkBlock::depth, &WalkBlock::g, &WalkBlock::guided, &WalkBlock::length, &WalkBlock::log_length,
+                            &WalkBlock::opposite, &WalkBlock::u_distance})
     (block.*member)[to] = (other.*member)[from];
   for (const auto member : {&WalkBlock::hero, &WalkBlock::key, &WalkBlock::steps})
     (block.*member)[to] = (other.*member)[from];
 }
 
 } // namespace
+
+// Writes a walk into a lane of the waiting block.
+void WalkStage::load(const Walk &walk, uint32_t lane) {
+  put(walk.ray.o, waiting_.p, lane);
+  put(glm::vec3(walk.ray.d), waiting_.d, lane);
+  put(walk.n, waiting_.n, lane);
+  put(walk.beta, waiting_.beta, lane);
+  put(walk.color, waiting_.color, lane);
+  put(walk.radius, waiting_.radius, lane);
+  waiting_.ior[lane] = walk.ior;
+  waiting_.g[lane] = walk.g;
+  waiting_.method[lane] = uint32_t(walk.method);
+  waiting_.u_channel[lane] = walk.u_channel;
+  waiting_.u_distance[lane] = walk.u_distance;
+  waiting_.key[lane] = walk.key;
+}
+
+// Begins the next walks, as many as a block holds.
+void WalkStage::begin_some(std::span<const Walk> walks) {
+  waiting_.walking = 0;
+  for (first_waiting_ = kBlockLanes; first_waiting_ > 0 && next_ < at_random_.size(); ++next_) {
+    load(walks[at_random_[next_]], --first_waiting_);
+    waiting_walks_[first_waiting_] = at_random_[next_];
+    waiting_.walking |= 1u << first_waiting_;
+  }
+  kernel_.begin(waiting_);
+}
+
+// Fills the free lanes with the next walks.
+void WalkStage::fill(std::span<const Walk> walks) {
+  for (size_t number = 0; number < blocks_.size(); ++number)
+    for (uint32_t lane = 0; lane < kBlockLanes; ++lane) {
+      if (blocks_[number].walking >> lane & 1)
+        continue;
+      if (first_waiting_ == kBlockLanes) {
+        if (next_ == at_random_.size())
+          return;
+        begin_some(walks);
+      }
+      move_lane(blocks_[number], lane, waiting_, first_waiting_);
+      walk_of_[number * kBlockLanes + lane] = waiting_walks_[first_waiting_++];
+      blocks_[number].walking |= 1u << lane;
+    }
+}
 
 // Moves the walks of the last blocks into free lanes of the first ones, so that few blocks are left at the end. The numbers of
 // a walk do not depend on its lane.
@@ -133,11 +142,11 @@ uint64_t WalkStage::walk(std::span<Walk> walks) {
   walk_of_.resize(blocks_.size() * kBlockLanes);
   for (WalkBlock &block : blocks_)
     block.walking = 0;
-  for (size_t next = 0;;) {
-    if (next < at_random_.size())
-      fill(walks, next);
-    else
-      close_ranks();
+  next_ = 0;
+  first_waiting_ = kBlockLanes;
+  for (;;) {
+    fill(walks);
+    close_ranks();
     for (WalkBlock &block : blocks_)
       if (block.walking != 0)
         kernel_.step(block);

@@ -28,8 +28,9 @@ struct alignas(64) WalkBlock {
   Floats opposite;                          // distance to the other side along -n, 0 if none is near
   Floats light[3], densities[3];
   Words hero, key, steps; // channel; steps taken
-  // In of begin(): of the surface, and the numbers of a walk.
-  Floats beta[3], color[3], radius[3], u_channel, u_distance;
+  Floats u_distance;      // number of the first distance
+  // In of begin(): of the surface, and the number that chooses a channel.
+  Floats beta[3], color[3], radius[3], ior, u_channel;
   Words method;
   // Members of the current step.
   Floats t, reach;                                   // distance to travel; how far to look for a surface
@@ -44,8 +45,8 @@ struct alignas(64) WalkBlock {
 };
 
 struct WalkKernel {
-  // Begins the walks of these lanes.
-  void (*begin)(WalkBlock &block, uint32_t lanes);
+  // Begins the walks of the lanes of `walking`.
+  void (*begin)(WalkBlock &block);
   // Samples direction and distance of the next step of all walking lanes.
   void (*step)(WalkBlock &block);
   // Moves all walking lanes to the end of their step.
@@ -61,8 +62,9 @@ public:
   uint64_t walk(std::span<Walk> walks);
 
 private:
-  void load(const Walk &walk, size_t number, uint32_t lane);
-  void fill(std::span<const Walk> walks, size_t &next);
+  void load(const Walk &walk, uint32_t lane);
+  void begin_some(std::span<const Walk> walks);
+  void fill(std::span<const Walk> walks);
   void close_ranks();
   void look(std::span<const Walk> walks);
 
@@ -71,6 +73,11 @@ private:
   ProfileStage profile_;
   // Numbers of the walks: by their profile, and at random.
   std::vector<size_t> by_profile_, at_random_;
+  size_t next_ = 0; // of at_random_: the next walk to begin
+  // Walks that have begun and wait for a lane, from its lane first_waiting_ on: their media are found with all lanes in use.
+  WalkBlock waiting_{};
+  uint32_t first_waiting_ = 0;
+  size_t waiting_walks_[kBlockLanes];
   std::vector<WalkBlock> blocks_;
   std::vector<size_t> walk_of_; // by block and lane
   // By ray.

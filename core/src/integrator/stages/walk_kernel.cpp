@@ -47,15 +47,15 @@ LANCER_LANE F largest_of_three(const V3 &v) { return max(max(v.x, v.y), v.z); }
 LANCER_LANE V3 faded(const V3 &sigma, F t) { return {exp(-sigma.x * t), exp(-sigma.y * t), exp(-sigma.z * t)}; }
 LANCER_LANE F channel_of(const V3 &v, U hero) { return select(equal(hero, U(0u)), v.x, select(equal(hero, U(1u)), v.y, v.z)); }
 
-void begin(WalkBlock &block, uint32_t lanes) {
+void begin(WalkBlock &block) {
   for (int first = 0; first < kBlockLanes; first += kLanes) {
-    const M now = some(lanes, first);
+    const M now = some(block.walking, first);
     if (!any(now))
       continue;
     const F zero(0.0f), one(1.0f);
     const V3 before = load3(block.beta, first);
     V3 beta = before, sigma_t(one), albedo(F(0.5f));
-    const Vec3<F> color = load3(block.color, first), radius = load3(block.radius, first);
+    const Vec3<F> color = load3(block.color, first), given = load3(block.radius, first);
     const F g = load(block.g + first);
     const U method = load(block.method + first);
     for (const auto which : {SubsurfaceMethod::RandomWalkLegacy, SubsurfaceMethod::Skin, SubsurfaceMethod::RandomWalk}) {
@@ -63,6 +63,7 @@ void begin(WalkBlock &block, uint32_t lanes) {
       if (!any(mine))
         continue;
       Vec3<F> weight = before;
+      const Vec3<F> radius = walking_radius<F>(which, given, color, load(block.ior + first));
       const Medium<F> found = medium_below<F>(which, color, radius, g, weight);
       sigma_t = select(mine, V3(found.sigma_t), sigma_t);
       albedo = select(mine, V3(found.albedo), albedo);
@@ -74,18 +75,18 @@ void begin(WalkBlock &block, uint32_t lanes) {
     const F u = load(block.u_channel + first);
     const M red = u < chance.x, green = (!red) & ((u < chance.x + chance.y) | (chance.z == zero));
     const F v = diffusion_length(largest_of_three(albedo));
-    store3(block.sigma_t, first, now, sigma_t);
-    store3(block.sigma_s, first, now, sigma_t * albedo);
+    store3(block.sigma_t, first, sigma_t);
+    store3(block.sigma_s, first, sigma_t * albedo);
     // A medium without depth absorbs all.
-    store3(block.light, first, now, select(v > one, beta, V3(zero)));
-    store3(block.densities, first, now, chance);
-    store(block.hero + first, select(now, select(red, U(0u), select(green, U(1u), U(2u))), load(block.hero + first)));
-    store(block.guided + first, now, select(g == zero, F(0.5f), one - max(F(0.5f), pow(abs(g), F(0.125f)))));
-    store(block.length + first, now, v);
-    store(block.log_length + first, now, log((v + one) / max(v - one, F(0x1p-100f))));
-    store(block.depth + first, now, zero);
-    store(block.opposite + first, now, zero);
-    store(block.steps + first, select(now, U(0u), load(block.steps + first)));
+    store3(block.light, first, select(v > one, beta, V3(zero)));
+    store3(block.densities, first, chance);
+    store(block.hero + first, select(red, U(0u), select(green, U(1u), U(2u))));
+    store(block.guided + first, select(g == zero, F(0.5f), one - max(F(0.5f), pow(abs(g), F(0.125f)))));
+    store(block.length + first, v);
+    store(block.log_length + first, log((v + one) / max(v - one, F(0x1p-100f))));
+    store(block.depth + first, zero);
+    store(block.opposite + first, zero);
+    store(block.steps + first, U(0u));
   }
 }
 

@@ -13,7 +13,7 @@ struct Walk {
   glm::vec3 n{0.0f};    // normal of the entry, against the walk, unit
   glm::vec3 beta{0.0f}; // throughput, with the colour of the surface; out: throughput at the end
   glm::vec3 color{0.0f}, radius{0.0f};
-  float g = 0.0f;
+  float g = 0.0f, ior = 1.4f;
   SubsurfaceMethod method = SubsurfaceMethod::RandomWalk;
   // The number that chooses the channel to walk for, and that of the first distance: evenly spread over the samples of a pixel.
   float u_channel = 0.0f, u_distance = 0.0f;
