@@ -11,8 +11,10 @@ from tiny_scenes import move, pencil, plane, rotate_x, scene
 from addon.bindings.enums import (
     Integrator,
     LobeKind,
+    NodeKind,
+    VectorOperation,
 )
-from addon.bindings.shading import Lobe, Material
+from addon.bindings.shading import Lobe, Material, Node
 from addon.bindings.snapshot import Instance, MeshData
 
 
@@ -59,6 +61,20 @@ def test_an_edge_is_rounded(place):
 def test_at_an_edge_the_normal_bisects():
     got = normal_at(1e-6, bevel(0.5))
     assert got / np.linalg.norm(got) == pytest.approx([math.sqrt(0.5), 0.0, math.sqrt(0.5)], abs=0.01)
+
+
+def test_two_rays_lie_along_the_axes_of_cycles():
+    """One of two rays goes along the normal. The other is turned by 45 degrees against this edge, so that it meets the side
+    if it starts below the edge and its disk, of radius r, lets it reach the side before its end.
+    """
+    count = 1024
+    turned = Node(NodeKind.VECTOR_MATH, VectorOperation.CEIL, inputs=(FIRST,))
+    materials = [glowing(bevel(1.0, rays=2), turned)]
+    got = seen(materials, [Instance(mesh=0, materials=(0,))], [edge_mesh()], at=(-1e-6, 0.0, 0.0), samples=count)
+    r = (np.arange(10000) + 0.5) / 10000
+    reaching = np.arcsin(np.minimum(np.sqrt(1 - r * r) / r, 1)) / (math.pi / 2)
+    share = 0.5 * np.mean(20 * r * (1 - r) ** 3 * reaching)
+    assert got[0] == pytest.approx(share, abs=5 * math.sqrt(share * (1 - share) / count))
 
 
 def test_far_from_edges_the_normal_stays():

@@ -70,16 +70,29 @@ double cubic_distance(double u) {
   return x;
 }
 
+// Two axes across a normal.
+struct Across {
+  glm::dvec3 t, b;
+};
+
+// Returns the axes that Cycles sends rays along: the direction of the sum of few normals depends on them.
+Across axes_across(const glm::dvec3 &n) {
+  const bool diagonal = n.x == n.y && n.x == n.z;
+  const glm::dvec3 t = glm::normalize(glm::cross(glm::dvec3(diagonal ? -1.0 : 1.0, 1.0, 1.0), n));
+  return {t, glm::cross(n, t)};
+}
+
 } // namespace
 
 glm::vec3 bevelled_normal(NodeRays &rays, const LookingPlace &at, double radius, uint32_t count, uint32_t node) {
   const LookingNumbers numbers(at, count, node);
-  const Frame frame(at.surface.ng);
+  const glm::dvec3 n(at.surface.ng);
+  const auto [t, b] = axes_across(n);
   glm::dvec3 sum(0.0);
   for (uint32_t i = 0; i < count; ++i) {
     // Choose an axis, and a point of the disk across the axis.
     const glm::vec2 u = numbers.of(i);
-    const AxisProbe probe(glm::dvec3(frame.n), glm::dvec3(frame.t), glm::dvec3(frame.b), u.x);
+    const AxisProbe probe(n, t, b, u.x);
     const double r = radius * cubic_distance(double(u.y)), drawn = cubic_weight(radius, r);
     Ray ray;
     probe.place(at.surface.p, r, radius, ray.o, ray.d, ray.tmax);
