@@ -28,6 +28,7 @@ from tiny_scenes import move, pencil, plane, rotate_y, scene, sphere
 
 from addon.bindings.enums import (
     Integrator,
+    MathOperation,
     NodeKind,
     Ray,
 )
@@ -50,6 +51,16 @@ def test_a_wall_occludes_a_segment(place, size):
 def test_a_corner_is_half_open():
     got = seen([glowing(occlusion(FAR)), BLACK], [plane(), wall()], at=(1.0, 0.0, 0.0))[0]
     assert got == pytest.approx(0.5, abs=noise(0.5))
+
+
+def test_two_rays_are_spread_by_the_axes_of_cycles():
+    """Two rays lie in opposite quadrants. Two of the quadrants are halved by this wall, whose axis is a diagonal of the axes of
+    Cycles: there both rays are open in one of four cases.
+    """
+    count, share = 1024, 0.5 * 0.25
+    both = Node(NodeKind.MATH, MathOperation.FLOOR, inputs=(FIRST,))
+    got = seen([glowing(occlusion(FAR, rays=2), both), BLACK], [plane(), wall()], at=(1.0, 0.0, 0.0), samples=count)[0]
+    assert got == pytest.approx(share, abs=5 * math.sqrt(share * (1 - share) / count))
 
 
 @pytest.mark.parametrize("reach", [0.5, 1.0, 1.9, 3.0])

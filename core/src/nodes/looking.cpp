@@ -1,6 +1,5 @@
 #include "nodes/looking.h"
 
-#include "bsdf/lobe.h"
 #include "sampling/axis_probe.h"
 #include "sampling/warp.h"
 
@@ -24,19 +23,26 @@ private:
   uint32_t pixel_, first_, dimension_;
 };
 
+// Returns the axes that Cycles sends rays by, with n as the third: what a material makes of few rays depends on them.
+glm::dmat3 ray_axes(const glm::dvec3 &n) {
+  const bool diagonal = n.x == n.y && n.x == n.z;
+  const glm::dvec3 t = glm::normalize(glm::cross(glm::dvec3(diagonal ? -1.0 : 1.0, 1.0, 1.0), n));
+  return {t, glm::cross(n, t), n};
+}
+
 } // namespace
 
 float open_share(NodeRays &rays, const LookingPlace &at, const glm::vec3 &n, double distance, uint32_t count, bool alone,
                  uint32_t node) {
   const LookingNumbers numbers(at, count, node);
-  const Frame frame(n);
+  const glm::dmat3 axes = ray_axes(glm::dvec3(n));
   Ray some[NodeRays::kMost];
   uint32_t open = 0;
   for (uint32_t first = 0; first < count; first += NodeRays::kMost) {
     const uint32_t now = std::min(count - first, NodeRays::kMost);
     for (uint32_t i = 0; i < now; ++i) {
-      const glm::vec3 way = frame.to_world(warp_cosine_hemisphere(numbers.of(first + i)));
-      some[i] = ray_from(at.surface, glm::dvec3(way), distance);
+      const glm::dvec3 way = axes * glm::dvec3(warp_cosine_hemisphere(numbers.of(first + i)));
+      some[i] = ray_from(at.surface, way, distance);
       if (!alone)
         some[i].kinds = RayKind::Shadow;
     }
@@ -70,29 +76,16 @@ double cubic_distance(double u) {
   return x;
 }
 
-// Two axes across a normal.
-struct Across {
-  glm::dvec3 t, b;
-};
-
-// Returns the axes that Cycles sends rays along: the direction of the sum of few normals depends on them.
-Across axes_across(const glm::dvec3 &n) {
-  const bool diagonal = n.x == n.y && n.x == n.z;
-  const glm::dvec3 t = glm::normalize(glm::cross(glm::dvec3(diagonal ? -1.0 : 1.0, 1.0, 1.0), n));
-  return {t, glm::cross(n, t)};
-}
-
 } // namespace
 
 glm::vec3 bevelled_normal(NodeRays &rays, const LookingPlace &at, double radius, uint32_t count, uint32_t node) {
   const LookingNumbers numbers(at, count, node);
-  const glm::dvec3 n(at.surface.ng);
-  const auto [t, b] = axes_across(n);
+  const glm::dmat3 axes = ray_axes(glm::dvec3(at.surface.ng));
   glm::dvec3 sum(0.0);
   for (uint32_t i = 0; i < count; ++i) {
     // Choose an axis, and a point of the disk across the axis.
     const glm::vec2 u = numbers.of(i);
-    const AxisProbe probe(n, t, b, u.x);
+    const AxisProbe probe(axes[2], axes[0], axes[1], u.x);
     const double r = radius * cubic_distance(double(u.y)), drawn = cubic_weight(radius, r);
     Ray ray;
     probe.place(at.surface.p, r, radius, ray.o, ray.d, ray.tmax);
