@@ -10,8 +10,8 @@ from .course_models import model_of
 _LOOSE_ENDS_ARE_ZERO = bpy.app.version < (5, 0)
 # CUSTOM GROUP is a node of an add-on with a tree of its own.
 GROUPS = {"GROUP", "CUSTOM GROUP"}
-# Nodes that Cycles does not know: it leaves out their links.
-_IGNORED = {"EEVEE_SPECULAR", "SHADERTORGB", "SQUEEZE", "UVALONGSTROKE"}
+# Nodes that Cycles does not know: it leaves out their links. CUSTOM is a node of another Blender or of an add-on.
+_IGNORED = {"CUSTOM", "EEVEE_SPECULAR", "SHADERTORGB", "SQUEEZE", "UVALONGSTROKE"}
 _LONGEST = 10000  # hops: ends the walk in a cycle of reroutes
 
 

@@ -111,6 +111,12 @@ def test_groups_of_addons_are_entered(case):
     assert got["emission"] == [0.25, 0.5, 0.75] and got["messages"] == []
 
 
+def test_nodes_that_cycles_does_not_know_have_no_effect(case):
+    got = case("foreign_node")
+    assert got["emission"] == [0.25, 0.5, 0.75]
+    assert got["messages"] == ["material 'Shown' on object 'Cube', node 'Foreign': Foreign has no effect, as in Cycles"]
+
+
 def test_light_that_depends_on_sampling_is_named(case):
     """A sky that looks different to the camera alone is no such light."""
     got = case("by_sampling")

@@ -156,6 +156,29 @@ def custom_group():
     return {"emission": list(snapshot.materials[0].emission), "messages": messages.lines()}
 
 
+def foreign_node():
+    """A node without a tree that an add-on has made. Nodes of another Blender have its type, too."""
+    from export_cases import export_told
+
+    class Foreign(bpy.types.ShaderNode):
+        bl_name = bl_idname = "LancerTestForeign"
+        bl_label = "Foreign"
+
+        def init(self, context):
+            self.outputs.new("NodeSocketColor", "Color")
+
+    stage.empty()
+    material = stage.shader("ShaderNodeEmission", name="Shown", Color=(0.25, 0.5, 0.75))
+    tree = material.node_tree
+    bpy.utils.register_class(Foreign)
+    emission = next(item for item in tree.nodes if item.type == "EMISSION")
+    tree.links.new(tree.nodes.new("LancerTestForeign").outputs[0], emission.inputs["Color"])
+    stage.cube(material=material)
+    snapshot, messages = export_told()
+    bpy.utils.unregister_class(Foreign)
+    return {"emission": list(snapshot.materials[0].emission), "messages": messages.lines()}
+
+
 def by_sampling():
     """Return the messages of a scene whose sky reads Light Path for the camera; then for glossy rays, without clear layers."""
     from export_cases import export_told
