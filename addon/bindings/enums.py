@@ -175,6 +175,7 @@ class NodeKind(IntEnum):
     OCCLUSION = 40
     BEVEL = 41
     RAYCAST = 42
+    VOXELS = 43
 
 
 class SkyModel(IntEnum):

@@ -171,6 +171,7 @@ def test_wrong_nodes(raw):
         (kinds.GABOR, 2),
         (kinds.RADIAL_TILING, 2),
         (kinds.VECTOR_TRANSFORM, 3),
+        (kinds.VOXELS, 3),
         (kinds.SKY, 5),
         (kinds.OBJECT_INFO, 5),
         (kinds.LIGHT_PATH, 15),
@@ -185,6 +186,7 @@ def test_wrong_nodes(raw):
     refused_with(raw.node(kind=kinds.IMAGE, image_count=1), words=["image", "0 images"])
     refused_with(raw.node(kind=kinds.CURVES), words=["image 0", "0 images"])
     refused_with(raw.node(kind=kinds.SKY), words=["image 0", "0 images"])
+    refused_with(raw.node(kind=kinds.VOXELS), words=["image 0", "0 images"])
     assert raw.call("lancer_scene_add_image", scene, ctypes.byref(raw.image(kind=abi.TexelKind.FLOAT)))[0] == Status.OK
     refused_with(raw.node(kind=kinds.IMAGE, image=2**32 - 1, image_count=2), words=["1 images"])
     # The picture has no row of eleven texels of three channels.

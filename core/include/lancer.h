@@ -325,7 +325,11 @@ enum lancer_node_kind {
   /* inputs: position; direction; length, in those of the direction. option 0: 1 if there is a hit, 1 if of its own object, the
    * distance; 1: position, 2: normal of the hit, else 0, 0, 0. flag 1: its own object alone */
   LANCER_NODE_RAYCAST = 42,
-  LANCER_NODE_COUNT = 43
+  /* inputs: vector. option LANCER_INTERPOLATE_*. image: a cube of n x n x n floating-point voxels of four channels, read as
+   * they are in memory, n texels wide and n * n high: layer z has the rows from n * z on. 0 ... 1 along each axis covers the
+   * cube, outside all is 0. Returns the first three channels, and the fourth as alpha */
+  LANCER_NODE_VOXELS = 43,
+  LANCER_NODE_COUNT = 44
 };
 /* Models of the sky. NISHITA: the single scattering of Blender before 5.0. */
 enum lancer_sky_model {

@@ -36,11 +36,11 @@ inline glm::vec3 any_direction(Random &random) {
 }
 
 inline constexpr uint32_t kFreeImages = 40, kTiles = kFreeImages, kSides = kTiles + 3, kTables = kSides + 6,
-                          kAngles = kTables + 3, kSkies = kAngles + 1;
+                          kAngles = kTables + 3, kSkies = kAngles + 1, kVoxels = kSkies + 2;
 
 // A world of five instances (two meshes, three exact surfaces) and images of all forms: kFreeImages of any form, then 3 tiles,
-// then the 6 sides of a cube, then tables of curves of 1, 3 and 4 channels, the light of a luminaire, and two tables of the
-// sky.
+// then the 6 sides of a cube, then tables of curves of 1, 3 and 4 channels, the light of a luminaire, two tables of the sky,
+// and a cube of voxels.
 class NodeWorld {
 public:
   Description description;
@@ -86,6 +86,10 @@ public:
         x = uniform_number(random, -1.0f, 1.0f);
       add_image(description, image_of(values, kSkyTexels, rows, 3));
     }
+    std::vector<float> voxels(3 * 3 * 3 * 4);
+    for (float &x : voxels)
+      x = uniform_number(random, 0.0f, 1.0f);
+    add_image(description, image_of(voxels, 3, 9, 4));
     camera.to_world = description.geometry.instances[2].to_world;
   }
 
@@ -218,6 +222,8 @@ inline NodeCase make_case(Random &random, uint32_t kind, uint32_t option, uint32
       last.matrix[6 + k] = any_direction(random)[k];
     last.matrix[9] = random() % 4 ? uniform_number(random, 0.0f, 3.0f) : 0.0f;
   }
+  if (kind == LANCER_NODE_VOXELS)
+    last.image = kVoxels;
   if (kind == LANCER_NODE_BUMP) {
     const uint32_t places[] = {LANCER_COORDINATE_UV,       LANCER_COORDINATE_GENERATED, LANCER_COORDINATE_NORMAL,
                                LANCER_COORDINATE_POSITION, LANCER_COORDINATE_OBJECT,    LANCER_COORDINATE_PARAMETRIC};
@@ -318,6 +324,7 @@ inline std::vector<NodeCase> all_cases(Random &random) {
     options(LANCER_NODE_OCCLUSION, 3, 4);
     options(LANCER_NODE_BEVEL, 3);
     options(LANCER_NODE_RAYCAST, 3, 2);
+    options(LANCER_NODE_VOXELS, 3);
   }
   return cases;
 }

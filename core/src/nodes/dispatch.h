@@ -9,6 +9,7 @@
 #include "nodes/place_nodes.h"
 #include "nodes/sky.h"
 #include "nodes/texture_nodes.h"
+#include "nodes/voxels.h"
 
 #include <bit>
 
@@ -104,6 +105,8 @@ template <class F> Value<F> node_value(const Program &program, const Inputs<F> &
     return bevel_node(in, site.standing(), number_of(program, node));
   case NodeKind::Raycast:
     return raycast_node(in, site);
+  case NodeKind::Voxels:
+    return voxels_node(in, site);
   case NodeKind::ObjectInfo:
     return object_info_node(node, site);
   case NodeKind::LightPath:

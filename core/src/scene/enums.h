@@ -16,7 +16,7 @@ struct NodeKind { enum : uint32_t {
   Mix = 9, Separate = 10, Combine = 11, Grey = 12, Fresnel = 13, LayerWeight = 14, NormalMap = 15, Bump = 16, Tangent = 17,
   Clamp = 18, Displacement = 19, Gamma = 20, Invert = 21, Noise = 22, Voronoi = 23, Gradient = 24, Curves = 25, ObjectInfo = 26,
   LightPath = 27, ColorModel = 28, Wave = 29, Magic = 30, Checker = 31, Brick = 32, WhiteNoise = 33, Gabor = 34, RadialTiling =
-  35, Wireframe = 36, VectorTransform = 37, Ies = 38, Sky = 39, Occlusion = 40, Bevel = 41, Raycast = 42
+  35, Wireframe = 36, VectorTransform = 37, Ies = 38, Sky = 39, Occlusion = 40, Bevel = 41, Raycast = 42, Voxels = 43
 }; };
 struct AttributeFlag { enum : uint32_t {
   Opaque = 1, First = 2, Still = 4

@@ -93,6 +93,7 @@ Shape shape_of(const lancer_node &node) {
   case LANCER_NODE_RAYCAST:
     return {3, 3, false};
   case LANCER_NODE_VECTOR_TRANSFORM:
+  case LANCER_NODE_VOXELS:
     return {1, 3, false};
   case LANCER_NODE_SKY:
     return {1, LANCER_SKY_COUNT, true};
@@ -176,6 +177,8 @@ public:
       read_angles(given, node);
     if (given.kind == LANCER_NODE_SKY)
       read_sky(given, node);
+    if (given.kind == LANCER_NODE_VOXELS)
+      read_voxels(given, node);
     if (given.kind == LANCER_NODE_BUMP) {
       if (given.first > at)
         bad_argument(where_ + "first " + std::to_string(given.first) + " is a later node");
@@ -263,6 +266,12 @@ private:
     const bool fits = given.option > LANCER_SKY_HOSEK_WILKIE || (table.height == 1 && table.width == kSkyTexels);
     if (table.kind != TexelKind::Float || table.channels != 3 || !fits)
       bad_argument(where_ + "image " + std::to_string(given.image) + " is not a table of the sky");
+  }
+
+  void read_voxels(const lancer_node &given, Node &node) const {
+    const Image &cube = table_of(given, node);
+    if (cube.kind != TexelKind::Float || cube.channels != 4 || cube.height != uint64_t(cube.width) * cube.width)
+      bad_argument(where_ + "image " + std::to_string(given.image) + " is not a cube of four floating-point numbers each");
   }
 
   // Converts names to numbers, including names that the kind implies.
