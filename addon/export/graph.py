@@ -16,7 +16,22 @@ import bpy
 from ..bindings.enums import VectorOperation
 from ..bindings.shading import NodeRef
 from ..messages.severity import Severity
-from . import colors, coordinates, curves, ies, looking, maths, normals, patterns, places, procedural, skies, spectrum, textures
+from . import (
+    colors,
+    coordinates,
+    curves,
+    ies,
+    looking,
+    maths,
+    normals,
+    patterns,
+    places,
+    point_density,
+    procedural,
+    skies,
+    spectrum,
+    textures,
+)
 from .arithmetic import THIRDS, triple
 from .node_builder import UNKNOWN, NodeBuilder, in_three
 from .resolved import ShaderTree
@@ -24,7 +39,10 @@ from .shader_cache import Sources
 from .sockets import find
 from .walk import Site, Walker
 
-_MODULES = (maths, colors, curves, coordinates, normals, textures, procedural, patterns, places, spectrum, ies, skies, looking)
+_MODULES = (
+    maths, colors, curves, coordinates, normals, textures, procedural, patterns, places, spectrum, ies, skies, looking,
+    point_density,
+)  # fmt: skip
 _READERS = {kind: reader for module in _MODULES for kind, reader in module.READERS.items()}
 _SCALARS = {"VALUE", "INT", "BOOLEAN"}
 _VECTORS = {"VECTOR", "ROTATION"}
@@ -44,6 +62,7 @@ class NodeGraph(NodeBuilder):
         self.objects = set()  # identities of the objects whose transform the nodes read
         self.is_of_world = False  # whether the nodes are seen in a direction, and not at a place of a mesh
         self.is_of_lamp = False  # whether the nodes are seen at a point of a lamp
+        self.has_volume = False  # whether the material has a volume beside its surface
         # For a lamp: a function that returns four numbers by the name of an ObjectAttribute or of LAMP_FACTS.
         self.lamp_value = None
         self.texts = set()  # (identity, contents) of the texts that the nodes read

@@ -162,7 +162,8 @@ def _from_nodes(material, graph):
         return {"lobes": ()}
     site = Site(output)
     has_surface = graph.is_linked(site, ("Surface",))
-    if graph.is_linked(site, ("Volume",)):
+    graph.has_volume = graph.is_linked(site, ("Volume",))
+    if graph.has_volume:
         shown = "its surface alone is shown" if has_surface else "nothing of it is shown"
         messages.add(f"{who}: volumes are not supported, {shown}", "feature:volume", severity=Severity.LEFT_OUT)
         if not has_surface:

@@ -35,6 +35,7 @@ SUBJECTS = (
     "textures_normals",
     "textures_computed",
     "textures_patterns",
+    "point_density",
     "lights_shapes",
     "lights_nodes",
     "lights_switches",
