@@ -23,9 +23,14 @@ def tell_range(graph, site, name, value):
     if not (_APPLIES and isinstance(value, NodeRef)):
         return
     node = graph.nodes[value.node]
-    if node.kind in _WITHIN or node.flags & _CLAMPED.get(node.kind, 0):
+    if node.kind in _WITHIN and not _is_density(graph, node) or node.flags & _CLAMPED.get(node.kind, 0):
         return
     graph.tell(site, f"input '{name}' is clamped to 0 to 1, which Cycles 3 does not do")
+
+
+def _is_density(graph, node):
+    """Whether the alpha that a node gives is that of voxels, which has no upper bound."""
+    return node.kind == NodeKind.ALPHA and graph.nodes[node.inputs[0].node].kind == NodeKind.VOXELS
 
 
 def tell_length(graph, site, normal):

@@ -36,3 +36,8 @@ def test_edits_of_the_points(tmp_path):
     got = blenders.run(PROGRAM, tmp_path, "point_density_cases", "edits")
     got.pop("console")
     assert got == {"first": [2, True, True], "points": [1, True, True], "place": [1, True, True], "frame": [1, True, True]}
+
+
+def test_a_density_is_no_share(tmp_path):
+    got = blenders.run(PROGRAM, tmp_path, "point_density_cases", "roughness")
+    assert len(got) == 1 and got[0].endswith("input 'Roughness' is clamped to 0 to 1, which Cycles 3 does not do")

@@ -129,3 +129,14 @@ def edits():
 
     found = parts_cases.results({"points": pull, "place": move, "frame": lambda: scene.frame_set(2)})
     return {name: (result[0]["shaders"], *result[1:3]) for name, result in found.items()}
+
+
+def roughness():
+    """Return the messages of a Principled BSDF whose roughness is a density."""
+    stage.empty()
+    node = _node(point_source="OBJECT", object=_cloud())
+    tree = node.id_data
+    surface = tree.nodes.new("ShaderNodeBsdfPrincipled")
+    tree.links.new(node.outputs["Density"], surface.inputs["Roughness"])
+    tree.links.new(surface.outputs[0], next(item for item in tree.nodes if item.type == "OUTPUT_MATERIAL").inputs["Surface"])
+    return export_told()[1].lines()
