@@ -17,7 +17,7 @@ struct Cube {
   std::vector<float> texels;
   Description description;
 
-  Cube(uint32_t side, Random &random) : side(side), texels(size_t(side) * side * side * 4) {
+  Cube(uint32_t n, Random &random) : side(n), texels(size_t(n) * n * n * 4) {
     for (float &x : texels)
       x = uniform_number(random, 0.0f, 1.0f);
   }

@@ -104,7 +104,7 @@ def point_density_of_particles(scene):
 @case(quick=True, size=size_of(4), **_OLD)
 def point_density_at_the_limits(scene):
     """One voxel; no object; no particle system; small points in a fine cube."""
-    limits = ({"resolution": 1}, {"object": None}, {"point_source": "PARTICLE_SYSTEM"}, {"radius": 0.12, "resolution": 40})
+    limits = ({"resolution": 1}, {"object": None}, {"point_source": "PARTICLE_SYSTEM"}, {"radius": 0.2, "resolution": 24})
     _set(scene, _cloud, [("Density", None, {"space": "WORLD", **fields}) for fields in limits])
 
 
