@@ -48,6 +48,7 @@ _COORDINATES = {
 }
 _GRADIENTS = {GradientKind.RADIAL: _WAVES}
 _LOOK_UPS = {Interpolation.LINEAR: 15.0, Interpolation.CLOSEST: 10.0, Interpolation.CUBIC: 35.0}
+_VOXELS = {Interpolation.LINEAR: 30.0, Interpolation.CLOSEST: 7.0, Interpolation.CUBIC: 150.0}
 # By the number of dimensions: for the texture, and for each of its octaves.
 _NOISE = ((5.0, 3.5), (6.0, 6.8), (10.0, 14.5), (12.0, 42.0))
 # Costs of Voronoi cells, by the number of dimensions.
@@ -200,6 +201,10 @@ def _image(node):
     return once * (1.5 if node.option == Projection.BOX else 1.0)
 
 
+def _voxels(node):
+    return _VOXELS.get(node.option, 0.0)
+
+
 def _looking(node):
     return _RAY * max(node.option, 1)
 
@@ -220,5 +225,6 @@ _RULES = {
     NodeKind.OCCLUSION: _looking,
     NodeKind.VECTOR_MATH: _vector_math,
     NodeKind.VORONOI: _voronoi,
+    NodeKind.VOXELS: _voxels,
     NodeKind.WAVE: _wave,
 }
