@@ -624,8 +624,10 @@ LANCER_API lancer_status lancer_compute_sky(uint32_t model, double elevation, do
  *                is the normal for option 0, the mirrored direction for option 1
  *   HAIR         option 0: reflection, 1: transmission of the Hair BSDF along tangent; roughness along it, roughness_across
  *                around it, offset in radians
- *   HAIR_FIBRE   Chiang's Principled Hair BSDF along tangent, as on meshes: color is the absorption, roughness and
- *                roughness_across as in HAIR, edge[0] the roughness of the first reflection over roughness, offset in radians
+ *   HAIR_FIBRE   Principled Hair BSDF along tangent, as on meshes: color is the absorption, offset the tilt of the scales in
+ *                radians. option 0: Chiang's model: roughness and roughness_across as in HAIR, edge[0] the roughness of the first
+ *                reflection over roughness. option 1: Huang's model: roughness is alpha of the facets, roughness_across the
+ *                minor axis over the major one, edge the factors of light reflected, passed, and reflected within once
  *   SUBSURFACE   light enters, goes below the surface of its object, and leaves elsewhere: color is the albedo of the surface,
  *                edge the radii of red, green and blue in world lengths, ior and roughness those of the facets that light
  *                enters by, anisotropy the mean cosine of scattering. option: LANCER_SUBSURFACE_*, plus 4 where radii below a

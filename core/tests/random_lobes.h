@@ -68,7 +68,7 @@ inline std::vector<Code> all_codes() {
                              (facets == Facets::AshikhminShirley && kind == LobeKind::Glossy) ||
                              (facets == Facets::MultiGgx && (of_facets || layered));
           const bool optional = layered || kind == LobeKind::Diffuse || kind == LobeKind::Conductor || kind == LobeKind::Toon ||
-                                kind == LobeKind::Hair;
+                                kind == LobeKind::Hair || kind == LobeKind::HairFibre;
           const bool below = kind == LobeKind::Subsurface;
           if (there && (below || option == 0 || (optional && option == 1)))
             all.push_back({kind, rules, facets, option});
@@ -86,6 +86,9 @@ inline Described described(Random &random, const Code &code, const glm::vec3 &ns
   lobe.weight = random.next() % 8 ? glm::max(color(random), random.uniform()) : glm::vec3(0.0f);
   lobe.color = color(random);
   lobe.roughness = roughness(random);
+  // The value of Huang's fibre has some 5 / alpha nodes.
+  if (code.kind == LobeKind::HairFibre && code.option == 1)
+    lobe.roughness = 0.05f + 0.95f * lobe.roughness;
   lobe.ior = index(random);
   lobe.shininess = random.uniform() * one_of(random, {0.0f, 1.0f, 4.0f, 200.0f, 1e5f});
   lobe.edge = color(random);

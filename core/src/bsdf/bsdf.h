@@ -47,7 +47,8 @@ template <class F> struct BsdfSample {
 //             another lobe samples such a direction. The pdf of eval_lit includes directions that cross the surface to the
 //             wrong side of ng.
 //   pdf       per solid angle; the pdf of eval integrates to 1 minus the probability of single directions minus the loss at
-//             the horizon.
+//             the horizon. That of Huang's fibre is 1 everywhere, as in Cycles: its samples carry a value of their own, and its
+//             value is an estimate, the same for the same key and directions.
 //   Sides     A lobe decides by its own normal whether wi is reflected or transmitted. Two other normals matter:
 //             - ns, if the lobe's normal differs from ns (bump): the value is 0 if wi is on one side of ns and on the other
 //               side of the lobe's normal. Diffuse lobes fall off smoothly towards that limit if bump_correction is set.
@@ -68,6 +69,7 @@ template <class F> struct Bsdf {
   B transmits = uniform<F>(false); // some lobe transmits; set by complete()
   bool bump_correction = true;
   bool shares = true; // samples carry their shares by component
+  WordOf<F> key{0u};  // of the numbers of Huang's fibre, whose value is an estimate by numbers of its own
   int frame_count = 0;
   int count = 0;
   V emission{F(0.0f)}; // emission of layered lobes towards wo
@@ -120,15 +122,18 @@ private:
     V wi[kMaxFrames];
     F cos_ng; // cosine to ng
   };
-  // The lobe that sampled wi in each lane, with its sampler's half vector, if any.
+  // The lobe that sampled wi in each lane, with its sampler's half vector, or with the value of Huang's sample, if any.
   struct Drawn {
     WordOf<F> lobe, frame;
-    B has_h;
+    B has_h = uniform<F>(false);
     V h;
+    B has_value = uniform<F>(false);
+    V value{F(0.0f)};
   };
   struct Direction;
 
   void turn_to_frames(const V &wi, const WordOf<F> &known, const V &wi_known, B single, Local &local) const;
+  ColorValue<F> fibre_value(const Lobe<F> &lobe, const V &wi, const B &drew, const Drawn &drawn) const;
   ColorValue<F> smooth_value(const Lobe<F> &lobe, const V &wi, const V &h) const;
   BsdfValue<F> sum(const Local &local, const Drawn &drawn, bool lit, uint32_t shapes = kAllShapes,
                    const B *hidden = nullptr) const;

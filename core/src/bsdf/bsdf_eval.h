@@ -4,7 +4,7 @@
 #include "bsdf/ashikhmin.h"
 #include "bsdf/bsdf.h"
 #include "bsdf/classic_lobes.h"
-#include "bsdf/hair.h"
+#include "bsdf/huang_eval.h"
 #include "bsdf/matte.h"
 #include "bsdf/microfacet_eval.h"
 #include "bsdf/normals.h"
@@ -93,6 +93,9 @@ template <class F> void Bsdf<F>::complete() {
     V expected = lobe.albedo;
     if (is_facets(lobe) && !reflects(lobe))
       expected = select(lobe.delta | lobe.delta_through, expected, lobe.color);
+    // Beside the density 1 of Huang's samples, the choice changes the picture: as in Cycles, it goes by the colour.
+    if (is_hair(lobe, Hair::Huang))
+      expected = lobe.color;
     lobe.probability = select(there, max(mean(expected), zero), zero);
     total += lobe.probability;
     smooth = smooth | (there & !lobe.delta);
@@ -180,6 +183,21 @@ template <class F> ColorValue<F> Bsdf<F>::smooth_value(const Lobe<F> &lobe, cons
   return {V(grey.f * wi.z), grey.pdf};
 }
 
+// drew: lanes whose direction the lobe has sampled.
+template <class F>
+ColorValue<F> Bsdf<F>::fibre_value(const Lobe<F> &lobe, const V &wi, const B &drew, const Drawn &drawn) const {
+  const V &wo_l = wo_local[lobe.frame];
+  if (is_hair(lobe, Hair::Chiang))
+    return chiang_eval(lobe, wo_l, wi);
+  if (!is_hair(lobe, Hair::Huang))
+    return hair_eval(lobe, wo_l, wi, drew);
+  const B known = drew & drawn.has_value;
+  if (all(known))
+    return {drawn.value, F(1.0f)};
+  const ColorValue<F> value = huang_eval(lobe, wo_l, wi, key);
+  return {select(known, drawn.value, value.f), value.pdf};
+}
+
 template <class F>
 BsdfValue<F> Bsdf<F>::sum(const Local &local, const Drawn &drawn, bool lit, uint32_t shapes, const B *hidden) const {
   const F zero(0.0f);
@@ -228,7 +246,7 @@ BsdfValue<F> Bsdf<F>::sum(const Local &local, const Drawn &drawn, bool lit, uint
       continue;
     }
     if (is_hair(lobe)) {
-      add(lobe.component, there, is_hair(lobe, Hair::Chiang) ? chiang_eval(lobe, wo_l, wi) : hair_eval(lobe, wo_l, wi, drew));
+      add(lobe.component, there, fibre_value(lobe, wi, drew, drawn));
       continue;
     }
     const B crossing = there & through;
@@ -267,14 +285,14 @@ template <class F> BsdfValue<F> Bsdf<F>::eval(const V &wi, int drawn) const {
   Local local;
   turn_to_frames(wi, WordOf<F>(~0u), wi, uniform<F>(false), local);
   const WordOf<F> number(static_cast<uint32_t>(drawn));
-  return sum(local, {number, number, uniform<F>(false), wi}, false);
+  return sum(local, {.lobe = number, .frame = number, .h = wi}, false);
 }
 
 template <class F> BsdfValue<F> Bsdf<F>::eval_lit(const V &wi, uint32_t shapes, const B *hidden) const {
   Local local;
   turn_to_frames(wi, WordOf<F>(~0u), wi, uniform<F>(false), local);
   const WordOf<F> nobody(~0u);
-  return sum(local, {nobody, nobody, uniform<F>(false), wi}, true, shapes, hidden);
+  return sum(local, {.lobe = nobody, .frame = nobody, .h = wi}, true, shapes, hidden);
 }
 
 } // namespace lancer

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bsdf/bsdf_eval.h"
+#include "bsdf/huang_sample.h"
 
 namespace lancer {
 
@@ -12,6 +13,8 @@ template <class F> struct Bsdf<F>::Direction {
   F probability;   // of single directions, within the lobe
   B valid, single, has_h;
   B through; // passes the surface; hair: is not reflected by the fibre's surface; subsurface: enters
+  B has_value;
+  V value; // of Huang's sample
 };
 
 // Samples a direction from one lobe, in the lanes that selected it.
@@ -21,7 +24,8 @@ template <class F> void Bsdf<F>::draw(const Lobe<F> &lobe, B mine, F u_side, F u
   V wi = direction.cosine, h(zero), weight(zero);
   F probability = one;
   B valid = uniform<F>(true), single = lobe.delta, has_h = uniform<F>(false);
-  B reflected = uniform<F>(is_hair(lobe, Hair::Reflection));
+  // Cycles calls all samples of Huang's fibre reflected.
+  B reflected = uniform<F>(is_hair(lobe, Hair::Reflection) || is_hair(lobe, Hair::Huang));
   const auto take_single = [&](const DeltaDirection<F> &given) __attribute__((always_inline)) {
     wi = select(lobe.delta, given.wi, wi);
     weight = V(given.weight);
@@ -89,7 +93,15 @@ template <class F> void Bsdf<F>::draw(const Lobe<F> &lobe, B mine, F u_side, F u
     take_single(dielectric_sample(lobe, wo_l, u_side));
     break;
   case LobeShape::Hair:
-    wi = is_hair(lobe, Hair::Chiang) ? chiang_sample(lobe, wo_l, u_side, u, v, reflected) : hair_sample(lobe, wo_l, u, v);
+    if (is_hair(lobe, Hair::Huang)) {
+      const FibreSample<F> fibre = huang_sample(lobe, wo_l, u_side, u, v, key);
+      wi = fibre.wi;
+      valid = fibre.valid;
+      direction.value = select(mine, fibre.value, direction.value);
+      direction.has_value = direction.has_value | mine;
+    } else {
+      wi = is_hair(lobe, Hair::Chiang) ? chiang_sample(lobe, wo_l, u_side, u, v, reflected) : hair_sample(lobe, wo_l, u, v);
+    }
     break;
   case LobeShape::Subsurface:
     wi = entry_sample(lobe, wo_l, frames[lobe.frame].to_local(-ng), u_side, u, v, valid);
@@ -148,8 +160,8 @@ template <class F> BsdfSample<F> Bsdf<F>::sample(F u_lobe, F u, F v) const {
       seen = select(mine, wo_local[lobe.frame], seen);
     }
   }
-  Direction direction{V(zero), V(zero),           V(zero),           V(zero),           V(zero),
-                      zero,    uniform<F>(false), uniform<F>(false), uniform<F>(false), uniform<F>(false)};
+  const B none = uniform<F>(false);
+  Direction direction{V(zero), V(zero), V(zero), V(zero), V(zero), zero, none, none, none, none, none, V(zero)};
   if (any(cosines))
     direction.cosine = warp_cosine_hemisphere(u, v);
   if (any(visible))
@@ -189,11 +201,14 @@ template <class F> BsdfSample<F> Bsdf<F>::sample(F u_lobe, F u, F v) const {
   const B through = direction.through;
   result.transmitted = through;
   result.delta = direction.single;
-  B valid = direction.valid & (direction.wi.z != zero);
+  // Fibres have no horizon.
+  const B off_horizon = direction.wi.z != zero;
+  B valid = direction.valid;
   for (int i = 0; i < count; ++i) {
     const B mine = equal(chosen, numbered(i));
     if (any(mine))
-      valid = valid & ((!mine) | draws_on_side(lobes[i], through, local.cos_ng));
+      valid =
+          valid & ((!mine) | ((uniform<F>(is_hair(lobes[i])) | off_horizon) & draws_on_side(lobes[i], through, local.cos_ng)));
   }
 
   // Weight by the sum over all smooth lobes, not by the selected lobe alone. h is the sampler's half vector with all of its
@@ -205,7 +220,8 @@ template <class F> BsdfSample<F> Bsdf<F>::sample(F u_lobe, F u, F v) const {
   for (int k = 0; k < 2 && shares; ++k)
     result.share[k] = select(single & equal(result.component, numbered(k)), V(one), V(zero));
   if (any(spread)) {
-    const BsdfValue<F> value = sum(local, {chosen, frame, direction.has_h, direction.h}, true);
+    const BsdfValue<F> value =
+        sum(local, {chosen, frame, direction.has_h, direction.h, direction.has_value, direction.value}, true);
     const B found = spread & (value.pdf > zero);
     const V f = value.f();
     result.weight = select(found, f / value.pdf, result.weight);

@@ -229,6 +229,7 @@ template <class F> LANCER_LANE void add_hair(Bsdf<F> &bsdf, const LobeInputs<F> 
   bsdf.add(lobe);
 }
 
+// The Principled Hair BSDF: option 0 is Chiang's model, 1 Huang's.
 template <class F> LANCER_LANE void add_hair_fibre(Bsdf<F> &bsdf, const LobeInputs<F> &inputs) {
   using V = Vec3<F>;
   const V tangent = unit_or(inputs.tangent, bsdf.frames[0].t);
@@ -237,10 +238,18 @@ template <class F> LANCER_LANE void add_hair_fibre(Bsdf<F> &bsdf, const LobeInpu
   // In the frame of another normal the fibre has no meaning.
   if (frame == 0)
     return;
-  Lobe<F> lobe = make_chiang(inputs.weight, inputs.roughness, inputs.roughness_across, inputs.edge.x, inputs.ior, inputs.offset,
-                             max(inputs.color, V(F(0.0f))), bsdf.frames[frame].to_local(bsdf.ng), inputs.rules);
+  const V absorption = max(inputs.color, V(F(0.0f))), &wo = bsdf.wo_local[frame];
+  Lobe<F> lobe;
+  if (inputs.option == 0) {
+    lobe = make_chiang(inputs.weight, inputs.roughness, inputs.roughness_across, inputs.edge.x, inputs.ior, inputs.offset,
+                       absorption, bsdf.frames[frame].to_local(bsdf.ng), inputs.rules);
+    lobe.albedo = chiang_albedo(lobe, wo);
+  } else {
+    lobe = make_huang(inputs.weight, inputs.roughness, inputs.roughness_across, inputs.ior, inputs.offset, absorption,
+                      inputs.edge, bsdf.frames[frame].to_local(bsdf.ns), inputs.rules);
+    lobe.albedo = huang_albedo(lobe, wo);
+  }
   lobe.frame = frame;
-  lobe.albedo = chiang_albedo(lobe, bsdf.wo_local[frame]);
   bsdf.add(lobe);
 }
 

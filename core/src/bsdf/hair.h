@@ -9,8 +9,8 @@
 
 namespace lancer {
 
-// Reflection and Transmission of the Hair BSDF; Chiang of the Principled Hair BSDF.
-enum class Hair : uint8_t { Reflection = 0, Transmission = 1, Chiang = 2 };
+// Reflection and Transmission of the Hair BSDF; the models of the Principled Hair BSDF: Huang's is in huang.h.
+enum class Hair : uint8_t { Reflection = 0, Transmission = 1, Chiang = 2, Huang = 3 };
 template <class F> bool is_hair(const Lobe<F> &lobe) { return lobe.shape == LobeShape::Hair; }
 template <class F> bool is_hair(const Lobe<F> &lobe, Hair variant) {
   return is_hair(lobe) && lobe.variant == static_cast<uint8_t>(variant);

@@ -224,6 +224,7 @@ template <class F> struct AskingPaths {
   bool walks = false, leaving = false;
   MaskOf<F> dimmed = uniform<F>(false);
   F pixel{0.0f};
+  WordOf<F> key{0u};
 };
 
 // Adds all lobes of the material as seen from wo. out_ns, out_ng: of the surface, outwards.
@@ -244,6 +245,7 @@ LANCER_LANE void find_lobes(const Material *const *materials, const Values &valu
   bsdf.walks = paths.walks;
   bsdf.after_diffuse = paths.after_diffuse;
   bsdf.pixel = paths.pixel;
+  bsdf.key = paths.key;
   for (size_t i = 0; i < material.lobes.size() && finds_lobes; ++i)
     add_described<F>(materials, i, values, hole, bsdf);
   if (paths.leaving)

@@ -136,12 +136,13 @@ LobeDescription read_lobe(const MaterialReader &reader, const lancer_lobe &given
   }
   if (is_hair(lobe)) {
     lobe.roughness = reader.read_share("roughness", given.roughness, 0.2f);
-    lobe.roughness_across = reader.read_share("roughness across", given.roughness_across, 0.2f);
+    lobe.roughness_across = is_huang(lobe) ? reader.read_scalar("aspect ratio", given.roughness_across, 0.0f, kBrightest, 0.85f)
+                                           : reader.read_share("roughness across", given.roughness_across, 0.2f);
     lobe.offset = reader.read_scalar("offset", given.offset, -kBrightest, kBrightest, 0.0f);
   }
   if (lobe.kind == LobeKind::HairFibre) {
     lobe.ior = reader.read_ior("IOR", given.ior);
-    lobe.edge = reader.read_color("edge", given.edge, 1.0f);
+    lobe.edge = is_huang(lobe) ? reader.read_color("factors", given.edge) : reader.read_color("edge", given.edge, 1.0f);
   }
   if (lobe.kind == LobeKind::Subsurface) {
     lobe.roughness = reader.read_share("roughness", given.roughness, 1.0f);
@@ -215,6 +216,7 @@ void make_schedules(Material &material) {
     collect(lobe, surface);
     const bool bent = lobe.normal.varies() || lobe.normal.value != glm::vec3(0.0f) || material.normal.varies();
     material.bends_exits |= goes_below(lobe) && bent;
+    material.estimates |= is_huang(lobe);
     if (!lobe.principled)
       continue;
     const Parameter &below = lobe.principled->emission;

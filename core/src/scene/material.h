@@ -69,6 +69,7 @@ struct Material {
   bool layered_emission = false;                       // a Principled lobe emits
   bool has_sheets = false;                             // a smooth sheet may let rays pass straight
   bool bends_exits = false;                            // light from below leaves about other normals than that of the surface
+  bool estimates = false;                              // the value of a lobe is an estimate, by random numbers of its own
   bool fixed() const { return program.nodes.empty(); } // no node decides anything
   bool emits() const { return layered_emission || emission.varies() || emission.value != glm::vec3(0.0f); }
   bool displaces() const { return displacement.varies() || displacement.value != glm::vec3(0.0f); }
@@ -79,6 +80,7 @@ struct Material {
 inline bool may_be_positive(const Parameter &parameter) { return parameter.varies() || parameter.value.x > 0.0f; }
 
 inline bool is_hair(const LobeDescription &lobe) { return lobe.kind == LobeKind::Hair || lobe.kind == LobeKind::HairFibre; }
+inline bool is_huang(const LobeDescription &lobe) { return lobe.kind == LobeKind::HairFibre && lobe.option == 1; }
 // Whether a lobe beside Principled may have a film.
 inline bool has_film(const LobeDescription &lobe) {
   return (lobe.kind == LobeKind::Glass || lobe.kind == LobeKind::Conductor) && may_be_positive(lobe.film_thickness);
@@ -175,7 +177,9 @@ LANCER_LANE LobeInputs<F> evaluate(const LobeDescription &lobe, const ParameterR
     inputs.edge = read.color(lobe.edge, f82 ? 1.0f : kBrightest);
   inputs.anisotropy = read.scalar(lobe.anisotropy, -0.99f, 0.99f);
   inputs.rotation = read.turns(lobe.rotation);
-  if (lobe.kind == LobeKind::Toon || is_hair(lobe))
+  if (is_huang(lobe))
+    inputs.roughness_across = read.scalar(lobe.roughness_across, 0.0f, kBrightest);
+  else if (lobe.kind == LobeKind::Toon || is_hair(lobe))
     inputs.roughness_across = read.share(lobe.roughness_across);
   if (is_hair(lobe))
     inputs.offset = read.turns(lobe.offset);

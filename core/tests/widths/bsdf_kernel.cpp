@@ -105,6 +105,7 @@ void begin(Bsdf<F> &bsdf, const Place *of, bool bump_correction) {
   bsdf.walks = true;
   bsdf.after_diffuse = inside;
   bsdf.pixel = abs(bsdf.ns.x);
+  bsdf.key = as_word(bsdf.ns.y);
 }
 
 void report_value(const char *name, const BsdfValue<F> &value, Report &add) {

@@ -129,6 +129,7 @@ private:
   void generate(std::span<const SampleAddress> addresses, std::span<SampleResult> results);
   void shade(std::span<SampleResult> results);
   void put_in_lane(size_t number, const Material &material, std::span<SampleResult> results);
+  void put_number(uint32_t lane, size_t number, const Material &material);
   void shade_block(std::span<SampleResult> results);
   void cut_holdouts(std::span<SampleResult> results);
   void record(std::span<SampleResult> results);

@@ -50,10 +50,19 @@ void ClassicIntegrator::put_in_lane(size_t number, const Material &material, std
     const uint32_t lane = surfaces_.add(ray, center, material);
     const Surface surface = surface_at_center(scene_, hit);
     surfaces_.replace(lane, surface, view_of(branches_[number], ray, surface.p));
-    number_[lane] = uint32_t(number);
+    put_number(lane, number, material);
     return;
   }
-  number_[surfaces_.add(ray, hit, material)] = uint32_t(number);
+  put_number(surfaces_.add(ray, hit, material), number, material);
+}
+
+void ClassicIntegrator::put_number(uint32_t lane, size_t number, const Material &material) {
+  number_[lane] = uint32_t(number);
+  if (!material.estimates)
+    return;
+  const Branch &branch = branches_[number];
+  const Sampler &sampler = samplers_[branch.sample];
+  surfaces_.set_key(lane, hash_combine(hash_combine(sampler.pixel(), sampler.sample()), branch.depth));
 }
 
 void ClassicIntegrator::shade_block(std::span<SampleResult> results) {

@@ -137,6 +137,8 @@ void PathIntegrator::put_in_lane(size_t number, const Material &material) {
     const double way = path.length + hit.t * glm::length(queue_.rays[number].d);
     surface_.place_path(lane, path.after_diffuse, path.leaving, path.dimmed, surface_.pixel_width(way));
   }
+  if (material.estimates)
+    surface_.set_key(lane, path.estimates_key());
   path_[lane] = number;
   leader_[lane] = 0;
   ends_ |= uint32_t{ends} << lane;

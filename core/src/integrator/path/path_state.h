@@ -83,6 +83,8 @@ struct Path {
   }
   // Returns the dimension of the numbers of nodes' rays at the path's current surface.
   uint32_t nodes_dimension() const { return kDimensionNodes + 2 * ((scatterings + entries) * kMaxCrossings + crossings); }
+  // Returns the key of the estimates at the path's current surface.
+  uint32_t estimates_key() const { return hash_combine(hash_combine(sampler.pixel(), sampler.sample()), nodes_dimension()); }
   // Returns the first dimension of the path's current vertex.
   uint32_t vertex_dimension() const { return kDimensionVertex + (scatterings + entries) * kVertexStride; }
   // Whether the path belongs to the first sample of its pixel. paths: number of paths after a split.

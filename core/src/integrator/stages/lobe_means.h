@@ -71,7 +71,9 @@ LANCER_LANE Mixture<F> mix(const Bsdf<F> &bsdf, const Vec3<F> &transmittance, Ma
     const MaskOf<F> there = (!black(lobe.color)) & !ended;
     const Vec3<F> albedo = lobe.rules < Rules::Blender52 ? lobe.albedo : lobe.albedo - lobe.through + shown_through(lobe);
     const F weight = select(there, abs(mean(albedo)), zero), share = matt_share(lobe, blended);
-    mixture.normal += weight * bsdf.frames[lobe.frame].n;
+    // Cycles shows denoisers the direction of Huang's fibres.
+    const Frame<F> &frame = bsdf.frames[lobe.frame];
+    mixture.normal += weight * (is_hair(lobe, Hair::Huang) ? frame.t : frame.n);
     mixture.all += weight;
     mixture.matt += share * weight;
     mixture.diffuse = select(there, mixture.diffuse + share * albedo, mixture.diffuse);

@@ -49,6 +49,7 @@ struct alignas(64) MaterialBlock {
   uint32_t after_diffuse = 0;                      // bits of lanes: a diffuse lobe has scattered the path; by place_path()
   uint32_t dimmed = 0;                             // bits of lanes: Fresnel's weight dims the exit from below; by place_path()
   Floats pixel;                                    // width of a pixel there, user's units; by place_path()
+  Words key;                                       // of the numbers of estimates; by set_key()
   bool shares = false;                             // diffuse and glossy shares of light are wanted
 };
 
@@ -116,6 +117,8 @@ public:
     materials_.leaving = leaving;
     materials_.pixel[lane] = pixel;
   }
+  // Sets the key of the random numbers by which the lobes of a lane estimate their values, where the material has any such.
+  void set_key(uint32_t lane, uint32_t key) { materials_.key[lane] = key; }
   // Lets nodes look around by these rays, which must outlive the stage.
   void look_by(NodeRays &rays) { looking_.rays = &rays; }
   // Computes the surfaces of all lanes.

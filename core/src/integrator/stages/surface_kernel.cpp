@@ -83,7 +83,8 @@ void build(const SurfaceBlock &surfaces, const MaterialBlock &materials, LobeBlo
                    .walks = materials.walks,
                    .leaving = materials.leaving,
                    .dimmed = some(materials.dimmed, first),
-                   .pixel = load(materials.pixel + first)});
+                   .pixel = load(materials.pixel + first),
+                   .key = load(materials.key + first)});
     store3(lobes.ns, first, bsdf.ns);
     store3(lobes.ng, first, bsdf.ng);
     store3(lobes.emission, first, bsdf.emission);
