@@ -10,14 +10,15 @@ from .arithmetic import triple
 from .sockets import RULES, SMALLEST_IOR
 
 _REFLECTION, _TRANSMISSION = 0, 1  # the option of HAIR
+_CHIANG, _HUANG = 0, 1  # the option of HAIR_FIBRE
 # Absorption of the pigments of human hair (d'Eon et al. 2011), per concentration.
 _EUMELANIN, _PHEOMELANIN = (0.506, 0.841, 1.653), (0.343, 0.733, 1.924)
 # The polynomial in the roughness around a fibre by which Chiang et al. 2016 turn a reflectance into an absorption.
 _SCALE = (0.245, 5.574, -10.73, 2.532, -0.215, 5.969)
 _DARKEST = 1e-30  # in place of black, which has no logarithm: it absorbs all light, too
 _THINNEST = 1e-4  # Cycles' least value of 1 - melanin
-# Before 4.2 Cycles computes fibres as in Blender 3.
-_FIBRE_RULES = Rules.BLENDER_3 if bpy.app.version < (4, 2) else RULES
+# Before 4.2 Cycles computes Chiang's fibres as in Blender 3.
+_CHIANG_RULES = Rules.BLENDER_3 if bpy.app.version < (4, 2) else RULES
 
 
 def read_hair(surface, site, weight):
@@ -43,8 +44,6 @@ def _edge(graph, which):
 def read_principled_hair(surface, site, weight):
     graph, m = surface.graph, MathOperation
     is_huang = getattr(site.node, "model", "CHIANG") == "HUANG"
-    if is_huang:
-        graph.tell(site, "the model Huang is not supported, Chiang is used")
 
     def number(name, default, low=-math.inf, high=math.inf):
         return graph.parameter(site, (name,), default, low=low, high=high)
@@ -55,25 +54,35 @@ def read_principled_hair(surface, site, weight):
 
     uneven = spread(number("Random Roughness", 0.0))
     along = graph.op(m.MULTIPLY, number("Roughness", 0.3), uneven)
-    # Huang's model has one roughness.
-    around = along if is_huang else graph.op(m.MULTIPLY, number("Radial Roughness", 0.3), uneven)
-    coat = graph.clamped(number("Coat", 0.0, 0.0, 1.0))
+    if is_huang:
+        # One roughness, from which the colour follows, too.
+        around, across = along, number("Aspect Ratio", 0.85, 0.0)
+        parts = ("R lobe", "TT lobe", "TRT lobe")
+        edge = _joined(graph, tuple(number(part, 1.0, 0.0) for part in parts))
+    else:
+        around = across = graph.op(m.MULTIPLY, number("Radial Roughness", 0.3), uneven)
+        edge = _in_first(graph, graph.subtract(1.0, graph.clamped(number("Coat", 0.0, 0.0, 1.0))))
     surface.add(
         LobeKind.HAIR_FIBRE,
         weight,
         _absorption(graph, site, number, spread, around),
-        rules=_FIBRE_RULES,
+        rules=RULES if is_huang else _CHIANG_RULES,
         roughness=along,
-        roughness_across=around,
-        edge=_in_first(graph, graph.subtract(1.0, coat)),
+        roughness_across=across,
+        edge=edge,
         ior=number("IOR", 1.55, SMALLEST_IOR),
         offset=number("Offset", math.radians(2.0)),
         tangent=_edge(graph, Coordinate.EDGE_U),
+        option=_HUANG if is_huang else _CHIANG,
     )
 
 
 def _in_first(graph, value):
     return value if isinstance(value, NodeRef) else (value, 0.0, 0.0)
+
+
+def _joined(graph, values):
+    return graph.combine(*values) if any(isinstance(value, NodeRef) for value in values) else triple(values)
 
 
 def _absorption(graph, site, number, spread, around):
@@ -104,5 +113,4 @@ def _of_reflectance(graph, color, around):
         root = graph.op(m.DIVIDE, graph.op(m.LOGARITHM, graph.op(m.MAXIMUM, value, _DARKEST), math.e), scale)
         return graph.op(m.MULTIPLY, root, root)
 
-    found = tuple(map(channel, range(3)))
-    return graph.combine(*found) if any(isinstance(value, NodeRef) for value in found) else triple(found)
+    return _joined(graph, tuple(map(channel, range(3))))

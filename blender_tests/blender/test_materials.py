@@ -358,10 +358,12 @@ def test_hair_on_meshes(case):
     del got["version"], got["console"]
     lobes = {name: material["lobes"][0] for name, material in got.items()}
     if "Huang" in got:
-        (text,) = got.pop("Huang")["messages"]
-        assert "the model Huang is not supported" in text
+        huang = lobes.pop("Huang")
         # It has one roughness, here 0.5 as the other nodes' radial one.
-        assert lobes["Huang"]["color"][0] == near(lobes["COLOR"]["color"][0])
+        assert huang["color"][0] == near(lobes["COLOR"]["color"][0])
+        assert (huang["option"], huang["roughness"], huang["roughness_across"]) == near((1, 0.5, 0.75))
+        assert (huang["edge"], huang["ior"]) == (near([2.0, 0.5, 0.25]), near(1.4))
+    assert all(lobes[way]["option"] == 0 for way in ("COLOR", "MELANIN", "ABSORPTION"))
     assert all(material["messages"] == [] for material in got.values())
     scale = 5.969 + 0.5 * (-0.215 + 0.5 * (2.532 + 0.5 * (-10.73 + 0.5 * (5.574 + 0.5 * 0.245))))
     assert lobes["COLOR"]["color"] == near([(math.log(x) / scale) ** 2 for x in (0.25, 1e-30, 1.0)])

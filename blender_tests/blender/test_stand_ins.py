@@ -6,16 +6,6 @@ from blenders import MODULE, PROGRAM
 
 
 @pytest.mark.parametrize("which", [MODULE, PROGRAM])
-def test_the_other_model_of_hair_is_told(which, tmp_path):
-    got = blenders.run(which, tmp_path, "stand_in_cases", "hair_models")
-    got.pop("console")
-    assert got.pop("CHIANG") == []
-    assert set(got) == ({"HUANG"} if which == MODULE else set())
-    for messages in got.values():
-        assert len(messages) == 1 and "the model Huang is not supported, Chiang is used" in messages[0]
-
-
-@pytest.mark.parametrize("which", [MODULE, PROGRAM])
 def test_a_value_stands_in_by_its_constant_and_a_colour_by_grey(which, tmp_path):
     got = blenders.run(which, tmp_path, "stand_in_cases", "unknown_sources")
     (lobe,) = got["lobes"]

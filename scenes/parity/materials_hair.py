@@ -33,9 +33,35 @@ _HAIR_COLORS = {
     "MELANIN": {"Melanin": 0.6, "Melanin_Redness": 0.4, "Tint": (0.9, 0.8, 1.0), "Random": 0.7},
     "ABSORPTION": {"Absorption_Coefficient": (0.1, 0.3, 0.8), "Coat": 0.5, "Random_Roughness": 0.4},
 }
+_HUANG = {
+    "round": {"Color": (0.5, 0.3, 0.15), "Roughness": 0.4, "Aspect_Ratio": 1.0},
+    "elliptic": {"Color": (0.5, 0.3, 0.15), "Aspect_Ratio": 0.6, "Offset": 0.1},
+    "smooth": {"Color": (0.7, 0.5, 0.3), "Roughness": 0.1},
+    "reflection": {"Transmission": 0.0, "Secondary_Reflection": 0.0, "Reflection": 3.0},
+    "transmission": {"Color": (0.7, 0.5, 0.3), "Reflection": 0.0, "Secondary_Reflection": 0.0},
+    "secondary": {"Color": (0.7, 0.5, 0.3), "Reflection": 0.0, "Transmission": 0.0, "Secondary_Reflection": 4.0},
+}
 
 
 @variants(values={"color": "COLOR", "melanin": "MELANIN", "absorption": "ABSORPTION"})
 def hair_principled(scene, way):
     fibre = shader("ShaderNodeBsdfHairPrincipled", {"parametrization": way}, **_HAIR_COLORS[way])
     studio(scene, fibre).visible_diffuse = False
+
+
+@variants(values={name: name for name in _HUANG}, since=(4, 0))
+def hair_huang(scene, name):
+    fibre = shader("ShaderNodeBsdfHairPrincipled", {"parametrization": "COLOR", "model": "HUANG"}, **_HUANG[name])
+    studio(scene, fibre).visible_diffuse = False
+
+
+@case(since=(4, 0))
+def hair_huang_beside_diffuse(scene):
+    def build(nodes):
+        inputs = {"Color": (0.5, 0.3, 0.15), "Roughness": 0.4}
+        props = {"parametrization": "COLOR", "model": "HUANG"}
+        fibre = nodes.add("ShaderNodeBsdfHairPrincipled", props=props, **inputs)
+        matt = nodes.add("ShaderNodeBsdfDiffuse", Color=(0.2, 0.4, 0.6))
+        return nodes.add("ShaderNodeMixShader", 0.5, fibre, matt)
+
+    studio(scene, material(build)).visible_diffuse = False

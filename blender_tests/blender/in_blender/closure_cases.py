@@ -45,6 +45,9 @@ def hair():
         tree = Tree("Huang")
         node = tree.node("BsdfHairPrincipled", model="HUANG", parametrization="COLOR")
         node.inputs["Color"].default_value, node.inputs["Roughness"].default_value = (0.25, 0.5, 1.0, 1.0), 0.5
+        node.inputs["Aspect Ratio"].default_value, node.inputs["IOR"].default_value = 0.75, 1.4
+        for name, factor in (("Reflection", 2.0), ("Transmission", 0.5), ("Secondary Reflection", 0.25)):
+            node.inputs[name].default_value = factor
         materials.append(tree.show(node.outputs[0]))
     for name in ("bare", "combed"):
         tree = Tree(name)

@@ -6,19 +6,6 @@ from export_cases import export_told
 from material_cases import Tree, answer
 
 
-def hair_models():
-    """Return {model: messages} of Principled Hair of each model that this Blender has."""
-    result = {}
-    for model in ("CHIANG", "HUANG") if bpy.app.version >= (4, 0) else ("CHIANG",):
-        tree = Tree(model)
-        node = tree.node("BsdfHairPrincipled")
-        if hasattr(node, "model"):
-            node.model = model
-        tree.show(node.outputs[0])
-        result[model] = answer(tree.material)[model]["messages"]
-    return result
-
-
 def unknown_sources():
     """Link a node that Lancer does not support to inputs of every type."""
     tree = Tree("fed")
