@@ -47,6 +47,29 @@ struct Cells {
   }
 };
 
+// A chord from a place ends on the ellipse, where its length along the direction leads: on the way in, and on the way back.
+TEST(Huang, ChordsEndOnTheEllipse) {
+  Random random(9);
+  for (const float aspect : {1.0f, 0.6f, 1e-3f, 1.7f})
+    for (int k = 0; k < 100; ++k) {
+      const Lobe<float> lobe = fibre_of(0.3f, aspect, 0.3f, glm::vec3(1.0f), Rules::Blender50);
+      const float angle = 6.28f * random.uniform(), x = 1.8f * random.uniform() - 0.9f, turn = 6.28f * random.uniform();
+      const float across = std::sqrt((1.0f - x) * (1.0f + x));
+      const FibrePlace<float> place = fibre_place(lobe, std::sin(angle), std::cos(angle), 0.1f);
+      glm::vec3 w(x, across * std::cos(turn), across * std::sin(turn));
+      if (glm::dot(w, place.normal) > 0.0f)
+        w = -w;
+      const glm::vec3 from(0.0f, aspect * place.cosine, place.sine);
+      for (const glm::vec3 &along : {w, -w}) {
+        const Chord<float> way = chord(lobe, place, along);
+        const glm::vec3 end = from + way.length * w, expected(0.0f, -aspect * way.cosine, -way.sine);
+        EXPECT_NEAR(end.y, expected.y, 2e-5f) << aspect << " " << k;
+        EXPECT_NEAR(end.z, expected.z, 2e-5f) << aspect << " " << k;
+        EXPECT_NEAR(way.sine * way.sine + way.cosine * way.cosine, 1.0f, 1e-5f);
+      }
+    }
+}
+
 // Scales turn light out of the fibre's plane across, and tables give back what facets on a plane lose, which is 5 % of alpha
 // too much on a curved surface.
 TEST(Huang, AClearFibreReturnsAllLight) {
