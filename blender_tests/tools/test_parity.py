@@ -225,7 +225,11 @@ _SINCE_52 = {"constants_and_joined_bundles", "principled_wall_glass_smooth"} | _
 _NOON = {"sky_single_scattering_noon", "sky_multiple_scattering_noon"}
 _SINCE_50 = _SINCE_52 | _NOON | {"repeat_zones", "closure_zones", "bundles", "menus_and_groups"}
 _NOT_IN_3 = {"light_true_sphere_point", "light_true_sphere_spot", "pass_denoising_last_surface", "principled_film_thin"}
-_GONE_50 = {"sky_nishita_noon"}
+_POINT_DENSITY = {
+    f"point_density_{name}"
+    for name in ("closest", "linear", "cubic", "of_vertices", "of_particles", "at_the_limits", "as_bump")
+}
+_GONE_50 = {"sky_nishita_noon"} | _POINT_DENSITY
 _GONE_52 = {"image_tiles_box"}
 _ABSENT = {
     "3.4": _SINCE_50 | _SINCE_45 | _NOT_IN_3,
@@ -239,11 +243,11 @@ _ABSENT = {
 # The scenes that show the older rules of the program.
 _RULES = (
     "principled_*,property_*,glossy_*,glass_*,diffuse_*,mix_*,bump_*,normals_*,image_*,color_attribute_*,object_info_random,point_soft,"
-    "temperature_warm,light_spot_*,light_area_*,light_sun_soft,light_true_*,camera_*,film_*,pass_*"
+    "temperature_warm,light_spot_*,light_area_*,light_sun_soft,light_true_*,camera_*,film_*,pass_*,point_density_*"
 )
 _SHARES = {
     "lights": "lights_*",
-    "materials": "materials_*,textures_*",
+    "materials": "materials_*,textures_*,point_density",
     "nodes": "inputs,inputs_objects,inputs_instances,inputs_places,zones,zones_bundles,left_out,settings_of_nodes,looking",
     "others": "objects,subdivisions,cameras,passes_*,worlds,skies,films",
 }
