@@ -71,7 +71,7 @@ SHADERS = {
             "Color": C, "Melanin": F, "Melanin Redness": F, "Tint": C, "Absorption Coefficient": C,
             "Roughness": ("f", 0.1, 1.0), "Radial Roughness": ("f", 0.1, 1.0), "Coat": F, "IOR": ("f", 1.1, 2.0),
             "Offset": ("f", -0.2, 0.2), "Random Color": F, "Random Roughness": F, "Random": F, "Aspect Ratio": ("f", 0.2, 1.0),
-            "Reflection": F, "Transmission": F, "Secondary Reflection": F,
+            "R lobe": F, "TT lobe": F, "TRT lobe": F,
         },
         {"BSDF": "s"},
         {"parametrization": ("ABSORPTION", "MELANIN", "COLOR"), "model": ("CHIANG", "HUANG")},
