@@ -42,3 +42,8 @@ def test_memory_is_a_limit(case):
     got = case("limited")
     assert "object 'Cube': adaptive subdivision by 0.5 pixels would make more than the 1000 triangles" in got["error"]
     assert got["kept"]
+
+
+def test_linked_objects_are_divided_once(case):
+    got = case("linked")
+    assert got["counts"] == got["counts"][:1] * 3 and got["kept"]

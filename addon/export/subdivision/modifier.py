@@ -57,7 +57,7 @@ def cage_of(owner, depsgraph):
     """Yield the mesh of an evaluated object that Cycles divides.
 
     The last modifier of the evaluated copy is off meanwhile. Blender evaluates the copy's modifiers again if all layers are
-    wanted; foreach_set tells no one of the change, so that nothing else is evaluated.
+    wanted.
     """
     if not _DIVIDES_CAGE:
         yield owner.data
@@ -66,10 +66,21 @@ def cage_of(owner, depsgraph):
     before = [False] * len(owner.modifiers)
     owner.modifiers.foreach_get(switch, before)
     try:
-        owner.modifiers.foreach_set(switch, [*before[:-1], False])
+        _set(owner.modifiers, switch, [*before[:-1], False])
         mesh = owner.to_mesh(preserve_all_data_layers=True, depsgraph=depsgraph)
-        owner.modifiers.foreach_set(switch, before)
+        _set(owner.modifiers, switch, before)
         yield mesh
     finally:
-        owner.modifiers.foreach_set(switch, before)
+        _set(owner.modifiers, switch, before)
         owner.to_mesh_clear()
+
+
+def _set(modifiers, switch, values):
+    """Set a switch of each modifier. foreach_set tells no one of the change, so that nothing else is evaluated."""
+    modifiers.foreach_set(switch, values)
+    found = [False] * len(values)
+    modifiers.foreach_get(switch, found)
+    # foreach_set ignores the modifiers of linked objects.
+    for modifier, value, is_on in zip(modifiers, values, found, strict=True):
+        if value != is_on:
+            setattr(modifier, switch, value)

@@ -1,5 +1,8 @@
 """Objects that Cycles divides adaptively, as they are exported, and what the export leaves behind."""
 
+import os
+import tempfile
+
 import bpy
 import numpy as np
 import stage
@@ -110,3 +113,24 @@ def limited():
         error = str(raised)
     divided.most_triangles = real
     return {"error": error, "kept": _kept() == before}
+
+
+def linked():
+    """Return the triangles of a divided cube, and of the same cube linked from another file."""
+    scene = stage.empty(width=80, height=60)
+    cube = stage.cube(2.0)
+    _adaptive(scene, cube, 8.0)
+    counts = [_exported()["triangles"]]
+    path = os.path.join(tempfile.mkdtemp(), "cube.blend")
+    bpy.data.libraries.write(path, {cube})
+    feature_set = getattr(scene.cycles, "feature_set", None)
+    scene = stage.empty(width=80, height=60)
+    if feature_set is not None:
+        scene.cycles.feature_set = feature_set
+    with bpy.data.libraries.load(path, link=True) as (there, here):
+        here.objects = there.objects
+    scene.collection.objects.link(here.objects[0])
+    before = _kept()
+    # Twice: the first export must leave the modifier on.
+    counts += [_exported()["triangles"] for _ in range(2)]
+    return {"counts": counts, "kept": _kept()[2] == before[2]}
