@@ -160,6 +160,34 @@ def test_edges_are_no_longer_than_the_rate():
     assert len(found.triangles) == 2 * (4 * 6 * 2) * (4 * 4 * 2)
 
 
+def test_the_coarsest_quad_has_a_centre():
+    """Its first cut has two segments, as its own edges."""
+    flat = cage([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], [(0, 1, 2, 3)])
+    surface = LinearPatches(flat.values[flat.corners], flat)
+    found = divided(surface, flat, Rate(100.0, 12))
+    places = surface.at(found.patches[found.owners], found.uvs[found.owners], nothing)
+    assert len(found.triangles) == 8 and len(places) == 9 and (places == (0.5, 0.5, 0.0)).all(axis=1).any()
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+@pytest.mark.filterwarnings("ignore:invalid value")
+def test_numbers_that_are_not_finite(bad):
+    """The faces beside a bad vertex have few triangles, which the library leaves out; the others are as they are without."""
+    points = [(x, y, 0.0) for y in range(7) for x in range(7)]
+    faces = [(7 * y + x, 7 * y + x + 1, 7 * y + x + 8, 7 * y + x + 7) for y in range(6) for x in range(6)]
+    eye = Camera(matrix=np.array([(1, 0, 0, 3.0), (0, 1, 0, 3.0), (0, 0, 1, 9.0)]), width=40, height=40)
+    for rate in (Rate(0.2, 12), Rate(1.0, 12, np.eye(4), pixel_size(eye, 4.0))):
+        places = []
+        for first in (points[0], (bad, 0.0, 0.0)):
+            mesh = cage([first, *points[1:]], faces)
+            surface = LimitPatches(mesh, nothing)
+            found = divided(surface, mesh, rate)
+            corners = surface.at(found.patches, found.uvs, nothing)[found.triangles]
+            # Limit points follow the vertices of two rings of faces.
+            places.append(corners[(corners[..., :2] > 3.0).all(axis=(1, 2))])
+        assert len(places[0]) and np.array_equal(*places)
+
+
 def test_levels_limit_the_segments():
     flat = cage([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], [(0, 1, 2, 3)])
     surface = LinearPatches(flat.values[flat.corners], flat)

@@ -24,11 +24,13 @@ class Rate:
         return points if self.matrix is None else points @ self.matrix[:3, :3].T + self.matrix[:3, 3]
 
     def lengths(self, start, end):
-        """Return the lengths between points of points(): as they are, and in units of the rate."""
-        lengths = np.linalg.norm(end - start, axis=1)
-        if self.matrix is None:
-            return lengths, lengths / self.rate
-        return lengths, lengths / np.maximum(self.rate * self.size(0.5 * (start + end)), 1e-30)
+        """Return the lengths between points of points(): as they are, and in units of the rate; 0 if they are no numbers."""
+        with np.errstate(invalid="ignore", over="ignore"):
+            lengths = np.nan_to_num(np.linalg.norm(end - start, axis=1), nan=0.0, posinf=0.0)
+            if self.matrix is None:
+                return lengths, lengths / self.rate
+            wanted = lengths / np.maximum(self.rate * self.size(0.5 * (start + end)), 1e-30)
+        return lengths, np.nan_to_num(wanted, nan=0.0, posinf=0.0)
 
 
 class EdgeTable:

@@ -166,7 +166,7 @@ class _Splitter:
         table = self._table
         table.split(quads.edges[:, (0, 2)].reshape(-1))
         (first, second, near, start), (third, fourth, far, end) = (self._at_middle(quads, side) for side in (0, 2))
-        depth = table.depth[quads.edges[:, (1, 3)]].max(axis=1, initial=0)
+        depth = table.depth[quads.edges[:, (1, 3)]].max(axis=1)
         cross = table.add(np.stack([start, end], 1), quads.patches, np.stack([near, far], 1), depth)
         e, r, uv = quads.edges, quads.reverse, quads.uvs
         no, yes = np.zeros(len(e), bool), np.ones(len(e), bool)
@@ -198,7 +198,7 @@ class _Splitter:
         """Split quads, of which an edge must be split and the opposite has one segment, into triangles."""
         table, e, r, uv = self._table, quads.edges, quads.reverse, quads.uvs
         ends = np.stack([self._corners(quads, corner) for corner in (0, 2)], axis=1)
-        diagonal = table.add(ends, quads.patches, uv[:, (0, 2)], table.depth[e].max(axis=1, initial=0))
+        diagonal = table.add(ends, quads.patches, uv[:, (0, 2)], table.depth[e].max(axis=1))
         no, yes = np.zeros(len(e), bool), np.ones(len(e), bool)
         return joined([
             Pieces(quads.patches, uv[:, :3], np.stack([e[:, 0], e[:, 1], diagonal], 1), np.stack([r[:, 0], r[:, 1], yes], 1)),
