@@ -47,3 +47,10 @@ def test_memory_is_a_limit(case):
 def test_linked_objects_are_divided_once(case):
     got = case("linked")
     assert got["counts"] == got["counts"][:1] * 3 and got["kept"]
+
+
+def test_creases_of_a_border_keep_its_corners(case):
+    reach, divides_cage = case("creased_border")
+    # Both coordinates of a corner are 1 in single precision. Before 4.5 Cycles divides what
+    # the modifier has made of the square.
+    assert abs(reach - 1.0) < 1e-6 or not divides_cage

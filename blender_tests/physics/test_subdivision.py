@@ -5,8 +5,9 @@ import pytest
 
 from addon.bindings.enums import CameraKind
 from addon.bindings.snapshot import Camera
-from addon.export.subdivision.catmull_clark import Cage
+from addon.export.subdivision.catmull_clark import Cage, Edges
 from addon.export.subdivision.edge_table import Rate
+from addon.export.subdivision.non_manifold import odd_corners
 from addon.export.subdivision.patches import LimitPatches, LinearPatches
 from addon.export.subdivision.pixel_size import pixel_size
 from addon.export.subdivision.splitting import TooManyTrianglesError, split_patches, triangle_counts
@@ -120,6 +121,37 @@ def test_sharp_vertices_stay():
     surface = LimitPatches(cage(CUBE, CUBE_FACES, sharp_vertices=[np.inf] + 7 * [0.0]), nothing)
     places = surface.at(np.arange(24), np.zeros((24, 2)), nothing)
     assert places[0] == pytest.approx(CUBE[0], abs=ROUNDING) and np.abs(places[6]).max() < 0.9
+
+
+def stays(mesh):
+    """Return the vertices that stay in their places because of how the faces meet there."""
+    return np.flatnonzero(odd_corners(mesh, Edges(mesh, mesh.neighbours()[0]))).tolist()
+
+
+def test_edges_of_many_faces_end_in_corners():
+    """Three sheets of two squares each around the line from 0 over 1 to 2, the vertices of a sheet beyond the others."""
+    line = [(0, 0, 0), (0, 0, 1), (0, 0, 2)]
+    sheets = [(x, y, z) for x, y in ((1, 0), (-1, 1), (-1, -1)) for z in range(3)]
+    faces = [(i, first + i, first + i + 1, i + 1) for first in (3, 6, 9) for i in range(2)]
+    mesh = cage([*line, *sheets], faces)
+    # The line's middle has two edges of three faces, and six faces for five edges.
+    assert stays(mesh) == [0, 2]
+    one = cage([*line, *sheets], faces[::2])
+    assert stays(one) == [0, 1]
+
+
+def test_faces_that_run_the_same_way_are_sharp():
+    mesh = cage([(0, -1, 0), (0, 0, 0), (0, 1, 0), (1, 0, 0), (1, 1, 0), (-1, 0, 1), (-1, 1, 1)], [(1, 3, 4, 2), (1, 5, 6, 2)])
+    edges = Edges(mesh, mesh.neighbours()[0])
+    assert edges.ends[(edges.faces == 2) & np.isinf(edges.sharpness)].tolist() == [[1, 2]] and stays(mesh) == [1, 2]
+    assert stays(cage(mesh.values, [(1, 3, 4, 2), (2, 6, 5, 1)])) == []
+
+
+def test_a_vertex_between_two_bodies_stays():
+    """Two cubes that share a corner, the last of one and the first of the other."""
+    faces = [*CUBE_FACES, *(tuple(7 + vertex for vertex in face) for face in CUBE_FACES)]
+    mesh = cage([*CUBE, *(np.array(CUBE[1:]) + 2)], faces)
+    assert stays(cube()) == [] and stays(mesh) == [7]
 
 
 @pytest.mark.parametrize("smooth", [True, False])

@@ -70,6 +70,13 @@ def _hills(bumps):
     return surface
 
 
+def _crease(mesh, values):
+    if bpy.app.version >= (4, 0):
+        mesh.attributes.new("crease_edge", "FLOAT", "EDGE").data.foreach_set("value", values)
+    else:
+        mesh.edges.foreach_set("crease", values)
+
+
 @case(quick=True, bounces=1)
 def subdivided_plane_at_a_grazing_angle(scene):
     """Hills of one square face that reaches from behind the camera to far away, mostly outside the picture."""
@@ -85,16 +92,60 @@ def subdivided_plane_at_a_grazing_angle(scene):
 def subdivided_creases(scene, crease):
     """The normals of a cube, of which half of the edges are creased."""
     mesh = parts.cube_mesh("Cube", 2.0)
-    values = [crease * (index % 2) for index in range(len(mesh.edges))]
-    if bpy.app.version >= (4, 0):
-        mesh.attributes.new("crease_edge", "FLOAT", "EDGE").data.foreach_set("value", values)
-    else:
-        mesh.edges.foreach_set("crease", values)
+    _crease(mesh, [crease * (index % 2) for index in range(len(mesh.edges))])
     mesh.polygons.foreach_set("use_smooth", [True] * len(mesh.polygons))
     thing = parts.place(scene, "Cube", mesh, _glowing("Normal"), (0, 0, 0.9), rotation=(0.2, 0.1, 0.5))
     divide(scene, thing)
     sky(scene)
     camera(scene, (0, -4.2, 2.2), (0, 0, 0.85), lens=60.0)
+
+
+def _mapped(scene, name, points, faces, surface):
+    """Places smooth faces that fill most of the picture."""
+    mesh = parts.mesh_from_points(name, points, faces)
+    mesh.polygons.foreach_set("use_smooth", [True] * len(faces))
+    thing = parts.place(scene, name, mesh, surface, (0, 0, 0.9), rotation=(0.3, 0.1, 0.5))
+    sky(scene)
+    camera(scene, (0, -4.2, 2.2), (0, 0, 0.85), lens=60.0)
+    return thing
+
+
+@variants(values={"half": 0.15, "full": 1.0})
+def subdivided_border_creases(scene, crease):
+    """A bent sheet with creases on its border and across it, whose corners they keep in their places."""
+    points = [(x, y, 0.4 * x * y) for y in (-1, 0, 1) for x in (-1, 0, 1)]
+    faces = [(3 * y + x, 3 * y + x + 1, 3 * y + x + 4, 3 * y + x + 3) for y in (0, 1) for x in (0, 1)]
+    thing = _mapped(scene, "Sheet", points, faces, _glowing("Normal"))
+    _crease(thing.data, [crease] * len(thing.data.edges))
+    divide(scene, thing)
+
+
+def _fin():
+    """A sheet with a fin of two squares in its middle: three faces meet at two edges."""
+    points = [(0.5 * x - 1, 0.5 * y - 1, 0.3 * (x == 2)) for y in range(5) for x in range(5)]
+    faces = [(5 * y + x, 5 * y + x + 1, 5 * y + x + 6, 5 * y + x + 5) for y in range(4) for x in range(4)]
+    points += [(-0.3, y, 1.0) for y in (-0.5, 0.0, 0.5)]
+    return points, [*faces, (7, 12, 26, 25), (12, 17, 27, 26)]
+
+
+def _turned():
+    """Two squares whose sides run the same way at the edge that they share."""
+    points = [(0, -1, 0), (0, 1, 0), (1, -1, 0.5), (1, 1, 0.5), (-1, -1, 0.6), (-1, 1, 0.6)]
+    return points, [(0, 2, 3, 1), (0, 4, 5, 1)]
+
+
+def _apex():
+    """Two pyramids that share their apex."""
+    square = ((-1, -1), (1, -1), (1, 1), (-1, 1))
+    points = [(0, 0, 0), *((x, y, -1) for x, y in square), *((0.8 * x, 0.8 * y, 1) for x, y in square)]
+    sides = [(0, first + row, first + (row + 1) % 4) for first in (1, 5) for row in range(4)]
+    return points, [*sides, (4, 3, 2, 1), (5, 6, 7, 8)]
+
+
+@variants(values={"fin": _fin, "turned": _turned, "apex": _apex})
+def subdivided_odd_faces(scene, build):
+    """Faces that form no single sheet, where OpenSubdiv keeps edges and vertices sharp."""
+    divide(scene, _mapped(scene, "Odd", *build(), _glowing("Generated")))
 
 
 def _gem(scene, surface, smooth):

@@ -6,6 +6,7 @@ import numpy as np
 from ..arrays import built_in, corner_vertices, read
 from ..edges import edge_ends
 from .catmull_clark import ENDLESS, Cage, Edges
+from .non_manifold import odd_corners
 
 # Since 4.5 Cycles refines the cage three times; what is sharper than that counts as smooth from there, but for full creases.
 # Before, it refines by the length of edges in the picture, at most ten times, and full creases are no exception.
@@ -46,17 +47,20 @@ def _creases(mesh, name, domain, old, field, count):
 
 
 def _with_sharp_vertices(cage, adaptive):
-    """Return the cage with vertices of two edges as sharp as both, and with sharp corners of boundaries where wanted."""
+    """Return the cage with vertices of two edges as sharp as both, and with the corners that stay in their places.
+
+    Those are the corners of boundaries, where wanted, and those of faces that form no single sheet.
+    """
     edges = Edges(cage, cage.neighbours()[0])
     count = len(cage.values)
     ends = edges.ends.reshape(-1)
     two = np.bincount(ends, minlength=count) == 2
     both = np.full(count, np.inf)
-    known = np.where(edges.faces == 2, edges.sharpness, 0.0)
-    np.minimum.at(both, ends, np.repeat(known, 2))
+    np.minimum.at(both, ends, np.repeat(edges.creases, 2))
     sharpness = np.where(two, np.minimum(cage.vertex_sharpness + both, ENDLESS), cage.vertex_sharpness)
     if adaptive.sharp_corners:
         sharpness[np.bincount(cage.corners, minlength=count) == 1] = np.inf
+    sharpness[odd_corners(cage, edges)] = np.inf
     return Cage(cage.values, cage.corners, cage.starts, cage.creases, cage.crease_sharpness, sharpness)
 
 

@@ -37,7 +37,11 @@ class Cage:
 
 
 class Edges:
-    """The edges of a cage: their ends, the edge from each corner to the next, and how sharp they are."""
+    """The edges of a cage: their ends, the edge from each corner to the next, their number of faces, and how sharp they are.
+
+    creases: the sharpness that the cage gives. is_odd: whether faces do not continue each other there, because there are more
+    than two or because both run the same way.
+    """
 
     def __init__(self, cage, after):
         vertices = len(cage.values)
@@ -46,15 +50,15 @@ class Edges:
         self.of_corner = self.of_corner.reshape(-1)
         self.ends = np.stack([keys // vertices, keys % vertices], axis=1) if len(keys) else np.zeros((0, 2), np.int64)
         self.faces = np.bincount(self.of_corner, minlength=len(keys))
-        self.sharpness = np.zeros(len(keys))
+        ahead = np.bincount(self.of_corner, ends[:, 0] < ends[:, 1], len(keys))
+        self.is_odd = (self.faces > 2) | (self.faces == 2) & (ahead != 1.0)
+        self.creases = np.zeros(len(keys))
         if len(cage.creases) and len(keys):
             wanted = _keys(cage.creases, vertices)
             found = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
             known = keys[found] == wanted
-            self.sharpness[found[known]] = cage.crease_sharpness[known]
-        self.sharpness[self.sharpness >= ENDLESS] = np.inf
-        # Boundaries, and edges of three and more faces, are sharp.
-        self.sharpness[self.faces != 2] = np.inf
+            self.creases[found[known]] = cage.crease_sharpness[known]
+        self.sharpness = np.where((self.faces < 2) | self.is_odd | (self.creases >= ENDLESS), np.inf, self.creases)
 
 
 def _keys(ends, vertices):

@@ -134,3 +134,17 @@ def linked():
     # Twice: the first export must leave the modifier on.
     counts += [_exported()["triangles"] for _ in range(2)]
     return {"counts": counts, "kept": _kept()[2] == before[2]}
+
+
+def creased_border():
+    """Return how far a square of four creased edges reaches along both x and y, and whether Cycles divides it as it is."""
+    scene = stage.empty(width=64, height=64)
+    stage.camera((0, 0, 5), (0, 0, 0), type="ORTHO", ortho_scale=4.0)
+    thing = stage.plane(2.0)
+    if bpy.app.version >= (4, 0):
+        thing.data.attributes.new("crease_edge", "FLOAT", "EDGE").data.foreach_set("value", [1.0] * 4)
+    else:
+        thing.data.edges.foreach_set("crease", [1.0] * 4)
+    _adaptive(scene, thing, 4.0)
+    positions = export_told()[0].meshes[0].positions
+    return float(np.abs(positions[:, :2]).min(axis=1).max()), bpy.app.version >= (4, 5)
