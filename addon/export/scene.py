@@ -26,6 +26,7 @@ class ExportOptions:
     is_preview: bool = False  # of a material, a world or a lamp
     # For a window:
     view: object = None  # a snapshot.Camera that replaces the camera object
+    dicing: object = None  # the snapshot.Camera by whose pixels meshes are divided
     space: object = None  # the SpaceView3D, whose local view and filters exclude objects
     parts: object = None  # the Parts of earlier exports
 
@@ -65,7 +66,8 @@ def export_scene(depsgraph, options=None, poll=None):
     images.frame, images.is_preview = scene.frame_current, options.is_preview
     shaders = ShaderCache(images) if parts is None else parts.shaders
     materials = Materials(messages, override, images, depsgraph, shaders)
-    divider = Divider(depsgraph, camera if options.view is None else None)
+    in_view = options.view is not None
+    divider = Divider(depsgraph, options.dicing if in_view else camera, messages, in_view)
     instances = Instances(depsgraph, materials, messages, shaders, divider, options.kept, parts, options.space)
     instances.collect(obey)
 

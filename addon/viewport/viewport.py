@@ -93,7 +93,14 @@ class Viewport:
 
     def _export(self, context, depsgraph):
         self._sight = _sight(context.space_data)
-        options = ExportOptions(view=_NO_CAMERA, passes=(Pass.COMBINED,), space=context.space_data, parts=self._parts)
+        view = self._view(context, depsgraph)
+        options = ExportOptions(
+            view=_NO_CAMERA,
+            dicing=None if view is None else view.camera,
+            passes=(Pass.COMBINED,),
+            space=context.space_data,
+            parts=self._parts,
+        )
         contents, messages = export_scene(depsgraph, options)
         self._set_contents(contents, contents.settings)
         before, self._messages, self._library = self._messages, messages, None

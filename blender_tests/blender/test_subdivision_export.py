@@ -54,3 +54,16 @@ def test_creases_of_a_border_keep_its_corners(case):
     # Both coordinates of a corner are 1 in single precision. Before 4.5 Cycles divides what
     # the modifier has made of the square.
     assert abs(reach - 1.0) < 1e-6 or not divides_cage
+
+
+def test_a_dicing_camera_without_a_frame(case):
+    got = case("dicing_cameras")
+    assert got["plain"] == [] and got["counts"] == 2 * [2 + 2 * 8 * 8 * 2]
+    assert any(line.startswith("the dicing camera is not used: camera 'Camera.001': ") for line in got["told"])
+
+
+def test_a_view_divides_by_its_own_pixels(case):
+    got = case("views")
+    # As in test_what_is_divided: a pixel is 0.1 wide, then 0.2. A view that moves keeps its meshes.
+    assert got["fine"] == got["later"] == 2 * 8 * 8 * 2 and got["coarse"] == 2 * 4 * 4 * 2
+    assert got["none"]["told"] == ["object 'Plane': adaptive subdivision by pixels needs a camera, Blender's mesh is shown"]

@@ -8,6 +8,10 @@ import numpy as np
 import stage
 from export_cases import export_told
 
+from addon.bindings.enums import CameraKind
+from addon.bindings.snapshot import Camera
+from addon.export.parts import Parts
+from addon.export.scene import ExportOptions, export_scene
 from addon.export.subdivision import divided
 
 
@@ -148,3 +152,44 @@ def creased_border():
     _adaptive(scene, thing, 4.0)
     positions = export_told()[0].meshes[0].positions
     return float(np.abs(positions[:, :2]).min(axis=1).max()), bpy.app.version >= (4, 5)
+
+
+def dicing_cameras():
+    """Return what the export tells of a dicing camera of no size, without and with an object to divide."""
+    scene = stage.empty(width=80, height=60)
+    stage.camera((0, 0, 5), (0, 0, 0), type="ORTHO", ortho_scale=8.0)
+    own, other = scene.camera, stage.camera((0, 0, 5), (0, 0, 0))
+    other.scale = 3 * [0.0]
+    scene.camera, scene.cycles.dicing_camera = own, other
+    stage.plane(2.0)
+    plain = export_told()[1].lines()
+    _quads(scene)
+    results = [export_told()]
+    scene.cycles.dicing_camera = None
+    results.append(export_told())
+    counts = [sum(len(mesh.triangles) for mesh in snapshot.meshes) for snapshot, _ in results]
+    return {"plain": plain, "counts": counts, "told": results[0][1].lines()}
+
+
+def _seen(width):
+    """Return the Camera of a view of the xy plane, 8 wide."""
+    matrix = np.array([(1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 5)], float)
+    return Camera(matrix, CameraKind.ORTHOGRAPHIC, window=(-4.0, 4.0, -4.0, 4.0), width=width, height=width)
+
+
+def views():
+    """Return the triangles of a row of two squares in views by their pixels, and what a view without pixels tells."""
+    scene = stage.empty()
+    scene.cycles.preview_dicing_rate = 1.0
+    # No view is divided by this camera, which is an error elsewhere.
+    stage.camera((0, 0, 5), (0, 0, 0)).scale = 3 * [0.0]
+    _quads(scene)
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+
+    def exported(dicing, parts):
+        snapshot, messages = export_scene(depsgraph, ExportOptions(view=Camera(), dicing=dicing, parts=parts))
+        return {"triangles": len(snapshot.meshes[0].triangles), "told": messages.lines()}
+
+    kept = Parts()
+    fine, later = (exported(_seen(width), kept)["triangles"] for width in (80, 40))
+    return {"fine": fine, "later": later, "coarse": exported(_seen(40), Parts())["triangles"], "none": exported(None, Parts())}
