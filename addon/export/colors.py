@@ -9,8 +9,7 @@ from ..bindings.enums import ColorModel, MathOperation, MixMode, NodeKind, Vecto
 from ..bindings.shading import NodeRef
 from . import cycles_folds
 from .arithmetic import clamp, each, is_constant, triple
-from .curves import constant_of_ramp, ramp_by_table
-from .maths import smooth_step
+from .curves import constant_of_ramp, needs_table, ramp_by_table
 
 _MODELS = {"HSV": (ColorModel.TO_HSV, ColorModel.FROM_HSV), "HSL": (ColorModel.TO_HSL, ColorModel.FROM_HSL)}
 _COLDEST, _HOTTEST = 800.0, 12000.0  # kelvin; temperatures are clamped to this range
@@ -146,7 +145,7 @@ def _ramp(graph, site, output):
     if not isinstance(factor, NodeRef):
         color = constant_of_ramp(ramp, clamp(factor))
         return color[3] if is_alpha else color[:3]
-    if ramp.color_mode != "RGB" or ramp.interpolation not in ("LINEAR", "CONSTANT", "EASE"):
+    if needs_table(ramp):
         return ramp_by_table(graph, ramp, factor, is_alpha)
     stops = [(stop.position, (stop.color[3],) * 3 if is_alpha else tuple(stop.color[:3])) for stop in ramp.elements]
     m = MathOperation
@@ -157,7 +156,6 @@ def _ramp(graph, site, output):
         else:
             scale = 1.0 / (end - start)
             share = graph.op(m.MULTIPLY_ADD, factor, scale, -start * scale, clamped=True)
-            share = smooth_step(graph, share) if ramp.interpolation == "EASE" else share
         result = graph.mix(share, result, color)
     return graph.component(result, 0) if is_alpha else result
 

@@ -13,6 +13,7 @@ _STEPS = 256
 _VALUES = _STEPS + int(bpy.app.version >= (4, 0))
 _EXTRAPOLATES, _STEPPED = 1, 2
 _OF_NUMBER = 1
+_ROUNDING = 1e-4  # of positions, in steps of the table: single precision keeps 2e-5
 
 
 def _ready(mapping):
@@ -69,6 +70,14 @@ def _number(graph, site, output):
     if EVALUATES_CONSTANTS and mapping.use_clip:
         curved = clamp(curved, mapping.clip_min_y, mapping.clip_max_y)
     return mix(factor, value, curved)
+
+
+def needs_table(ramp):
+    """Whether Cycles' table of a ramp differs from lines or steps between its stops, which may lie between values."""
+    if ramp.color_mode != "RGB" or ramp.interpolation not in ("LINEAR", "CONSTANT"):
+        return True
+    places = np.array([stop.position for stop in ramp.elements]) * (_VALUES - 1)
+    return bool(np.abs(places - np.round(places)).max() > _ROUNDING)
 
 
 def ramp_by_table(graph, ramp, factor, is_alpha):

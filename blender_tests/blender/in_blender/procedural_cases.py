@@ -258,9 +258,9 @@ def curves(side):
         board.square(f"{kind} {extend} {wide}", _curve(kind, extend, wide, rng))
     for mode, interpolation in itertools.product(("RGB", "HSV", "HSL"), ("EASE", "CARDINAL", "LINEAR", "B_SPLINE", "CONSTANT")):
         for output in ("Color", "Alpha"):
-            if mode == "RGB" and interpolation in ("EASE", "LINEAR", "CONSTANT"):
-                continue
             board.square(f"ramp {mode} {interpolation} {output}", _ramp(mode, interpolation, output))
+    for interpolation in ("EASE", "LINEAR", "CONSTANT"):
+        board.square(f"narrow ramp {interpolation}", _narrow_ramp(interpolation))
     return board.answer()
 
 
@@ -336,5 +336,23 @@ def _ramp(mode, interpolation, output):
         tree.links.new(vector, parts.inputs[0])
         tree.links.new(parts.outputs[0], node.inputs[0])
         return node.outputs[output]
+
+    return build
+
+
+def _narrow_ramp(interpolation):
+    """Return a builder of a ramp whose stops lie between values of Cycles' table, at factors about them."""
+
+    def build(tree, vector):
+        node = tree.nodes.new("ShaderNodeValToRGB")
+        ramp = node.color_ramp
+        ramp.interpolation = interpolation
+        ramp.elements[0].position, ramp.elements[1].position = 0.4985, 0.5015
+        parts, near = tree.nodes.new("ShaderNodeSeparateXYZ"), tree.nodes.new("ShaderNodeMath")
+        near.operation, near.inputs[1].default_value, near.inputs[2].default_value = "MULTIPLY_ADD", 0.01, 0.5
+        tree.links.new(vector, parts.inputs[0])
+        tree.links.new(parts.outputs[0], near.inputs[0])
+        tree.links.new(near.outputs[0], node.inputs[0])
+        return node.outputs["Color"]
 
     return build
