@@ -99,57 +99,55 @@ def _kept_pattern(segments):
 def _pattern(segments):
     """Return the places, (n, 2), of vertices along the edges and inside, and triangles between them."""
     corners = _SQUARE if len(segments) == 4 else _TRIANGLE
-    places, edges = [], []
-    for side, count in enumerate(segments):
-        start, end = corners[side], corners[(side + 1) % len(segments)]
-        edges.append(list(range(len(places), len(places) + count + 1)))
-        places += [start + (end - start) * (step / count) for step in range(count)]
+    firsts = np.cumsum((0, *segments))
+    edges = [list(range(first, last + 1)) for first, last in zip(firsts, firsts[1:], strict=False)]
     edges[-1][-1] = 0
-    found = _square(segments, edges, places) if len(segments) == 4 else _triangle(segments, edges, places)
-    return np.array(places), np.array(found, np.int64)
+    around = [
+        start + (end - start) * (np.arange(count) / count)[:, None]
+        for start, end, count in zip(corners, np.roll(corners, -1, axis=0), segments, strict=True)
+    ]
+    inside, triangles = (_square if len(segments) == 4 else _triangle)(segments, edges, np.concatenate(around))
+    return np.concatenate([*around, inside]), np.asarray(triangles, np.int64)
 
 
-def _square(segments, edges, places):
+def _square(segments, edges, around):
+    """Return the places inside and the triangles. around: the places on the edges."""
     across, up = (max(segments[side], segments[side + 2]) for side in (0, 1))
     if up == 1:
-        return _between(edges[2][::-1], edges[0], places)
+        return around[:0], _between(edges[2][::-1], edges[0], around)
     if across == 1:
-        return _between(edges[3][::-1], edges[1], places)
-    first = len(places)
-    places += [np.array((i / across, j / up)) for j in range(1, up) for i in range(1, across)]
-    grid = first + np.arange((across - 1) * (up - 1)).reshape(up - 1, across - 1)
-    found = []
-    for j in range(up - 2):
-        for i in range(across - 2):
-            a, b, c, d = grid[j, i], grid[j, i + 1], grid[j + 1, i + 1], grid[j + 1, i]
-            found += [(a, b, c), (a, c, d)]
+        return around[:0], _between(edges[3][::-1], edges[1], around)
+    i, j = np.meshgrid(np.arange(1, across), np.arange(1, up))
+    inside = np.stack([i.reshape(-1) / across, j.reshape(-1) / up], axis=1)
+    grid = len(around) + np.arange(len(inside)).reshape(i.shape)
+    a, b, c, d = grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]
+    found = np.stack([a, b, c, a, c, d], axis=-1).reshape(-1, 3)
     sides = (grid[0], grid[:, -1], grid[-1, ::-1], grid[::-1, 0])
-    for inner, outer in zip(sides, edges, strict=True):
-        found += _between(inner.tolist(), outer, places)
-    return found
+    return inside, _with_seams(found, sides, edges, np.concatenate([around, inside]))
 
 
-def _triangle(segments, edges, places):
+def _triangle(segments, edges, around):
+    """Return the places inside and the triangles. around: the places on the edges."""
     most = max(segments)
     corners = [edge[0] for edge in edges]
     if most == 1:
-        return [tuple(corners)]
+        return around[:0], [tuple(corners)]
     if most == 2:
-        return _of_halves(segments, edges, corners)
-    step, rows, first = 1.0 / (most + 1), most - 1, len(places)
-    grid = [[first + row * (row + 1) // 2 + column for column in range(row + 1)] for row in range(rows)]
-    places += [step * np.array((1 + column, 1 + row - column)) for row in range(rows) for column in range(row + 1)]
-    found = []
-    for row in range(rows - 1):
-        for column in range(row + 1):
-            a, b, c = grid[row][column], grid[row + 1][column + 1], grid[row + 1][column]
-            found.append((a, b, c))
-            if column < row:
-                found.append((a, grid[row][column + 1], b))
-    sides = ([row[-1] for row in grid], grid[-1][::-1], [row[0] for row in grid[::-1]])
-    for inner, outer in zip(sides, edges, strict=True):
-        found += _between(inner, outer, places)
-    return found
+        return around[:0], _of_halves(segments, edges, corners)
+    rows, columns = np.tril_indices(most - 1)
+    inside = 1.0 / (most + 1) * np.stack([1 + columns, 1 + rows - columns], axis=1)
+    # The place of a row and a column.
+    grid = np.full((most - 1, most - 1), -1)
+    grid[rows, columns] = len(around) + np.arange(len(rows))
+    a, b, c, d = grid[:-1, :-1], grid[1:, 1:], grid[1:, :-1], grid[:-1, 1:]
+    found = np.concatenate([np.stack([a, b, c], axis=-1)[a >= 0], np.stack([a, d, b], axis=-1)[d >= 0]])
+    sides = (grid.diagonal(), grid[-1, ::-1], grid[::-1, 0])
+    return inside, _with_seams(found, sides, edges, np.concatenate([around, inside]))
+
+
+def _with_seams(found, sides, edges, places):
+    """Return the triangles found inside and those between the sides of the inside and the edges."""
+    return np.concatenate([found, *(_between(side.tolist(), edge, places) for side, edge in zip(sides, edges, strict=True))])
 
 
 def _of_halves(segments, edges, corners):
@@ -169,7 +167,11 @@ def _of_halves(segments, edges, corners):
 
 
 def _between(left, right, places):
-    """Return triangles between two rows of vertices, along the shorter diagonals."""
+    """Return triangles between two rows of vertices, along the shorter diagonals.
+
+    The diagonals are those of the unit square, so that all pieces of a kind share a pattern. Cycles takes the shorter ones on
+    the surface, which differ where a piece is strongly bent or skewed.
+    """
     found, i, j = [], 0, 0
     while i < len(left) - 1 or j < len(right) - 1:
         if j == len(right) - 1:
