@@ -20,6 +20,8 @@ def array(value, dtype, shape, what):
 def same(a, b):
     if a is b:
         return True
+    if isinstance(a, Blocks) and isinstance(b, Blocks):
+        return a.equals(b)
     a, b = (np.asarray(value) if isinstance(value, Blocks) else value for value in (a, b))
     if isinstance(a, np.ndarray) or isinstance(b, np.ndarray):
         if not (isinstance(a, np.ndarray) and isinstance(b, np.ndarray)):

@@ -11,6 +11,7 @@ import pytest
 from addon.bindings.blocks import SAMPLED, Blocks, even_sample, in_blocks
 from addon.bindings.digest import scene_digest
 from addon.bindings.mapped_file import MappedFile, MappedPages, _bytes_of_files
+from addon.bindings.record import same
 from addon.bindings.snapshot import Image, SceneSnapshot
 
 SPARE = np.zeros(4096, np.uint8)
@@ -80,3 +81,18 @@ def test_pages_stay_under_the_limit():
     pages.keep_under()
     assert _bytes_of_files() - before <= rows.nbytes // 2 + slack
     assert total == int(rows.view(np.uint32).sum(dtype=np.uint64)) and np.array_equal(np.asarray(found), rows)
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.float32])
+def test_blocks_are_compared_in_place(dtype, monkeypatch):
+    rows = texels(130, 70, 3, dtype=dtype)
+    other = rows.copy()
+    other[-1, -1, 2] += 1
+    if dtype == np.float32:
+        rows[0, 0, 0] = other[0, 0, 0] = np.nan
+    one, different, again = blocks_of(rows, other, rows)
+    monkeypatch.setattr(Blocks, "__array__", None)
+    assert same(one, again) and not same(one, different) and not same(one, blocks_of(rows[:-1])[0])
+    twin = Blocks(one.shape, one.dtype, one.file, one._offset, 0, one.sample)
+    monkeypatch.setattr(Blocks, "array", None)
+    assert same(one, twin)
