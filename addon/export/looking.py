@@ -1,7 +1,9 @@
 """Nodes that look around a surface by rays: Ambient Occlusion, Bevel, Raycast. Readers take (graph, site, output)."""
 
 from ..bindings.enums import Coordinate, NodeKind, VectorOperation
+from .attributes import attribute_name
 from .coordinates import coordinate
+from .hit_attributes import sampled_name
 from .settings import occlusion_distance, world_of
 
 _INSIDE, _ALONE = 1, 2  # flags of OCCLUSION
@@ -9,6 +11,7 @@ _ONLY_LOCAL = 1  # flag of RAYCAST
 _OF_HIT = 0  # option of RAYCAST
 _HIT_FACTS = {"Is Hit": 0, "Self Hit": 1, "Hit Distance": 2}
 _HIT_PLACES = {"Hit Position": 1, "Hit Normal": 2}  # options of RAYCAST
+_ATTRIBUTE, _MEAN, _ALPHA = 3, 2, 4  # option of RAYCAST, and its flags
 _NO_NORMAL = (0.0, 0.0, 0.0)
 
 
@@ -38,10 +41,13 @@ def _bevel(graph, site, output):
 
 
 def _raycast(graph, site, output):
-    name = output.identifier
+    name, is_number = output.identifier, output.type == "VALUE"
+    option, flags, attribute = _HIT_PLACES.get(name, _OF_HIT), _ONLY_LOCAL * site.node.only_local, ""
     if name not in _HIT_FACTS and name not in _HIT_PLACES:
-        graph.tell(site, f"the attribute '{output.name}' of the surface that is hit is not supported, 0 is used")
-        return 0.0 if output.type in ("VALUE", "INT", "BOOLEAN") else (0.0, 0.0, 0.0)
+        attribute, is_alpha = sampled_name(site.node, name)
+        option, flags = _ATTRIBUTE, flags | (_ALPHA if is_alpha else _MEAN if is_number else 0)
+        if not attribute:
+            return 0.0 if is_number else (0.0, 0.0, 0.0)
     position = graph.linked(site, ("Position",), None, evaluated=True)
     if position is None:
         position = coordinate(graph, Coordinate.POSITION)
@@ -49,9 +55,9 @@ def _raycast(graph, site, output):
     if direction is None:
         direction = graph.normal if graph.normal != _NO_NORMAL else coordinate(graph, Coordinate.SHADING_NORMAL)
     length = graph.parameter(site, ("Length",), 1.0)
-    option, flags = _HIT_PLACES.get(name, _OF_HIT), _ONLY_LOCAL * site.node.only_local
-    value = graph.emit(NodeKind.RAYCAST, position, direction, length, option=option, flags=flags)
-    return graph.component(value, _HIT_FACTS[name]) if option == _OF_HIT else value
+    named = {"name": attribute_name(attribute)} if attribute else {}
+    value = graph.emit(NodeKind.RAYCAST, position, direction, length, option=option, flags=flags, **named)
+    return graph.component(value, _HIT_FACTS.get(name, 0)) if is_number else value
 
 
 READERS = {"AMBIENT_OCCLUSION": _occlusion, "BEVEL": _bevel, "MATERIAL_RAYCAST": _raycast}

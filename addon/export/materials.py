@@ -11,6 +11,7 @@ from ..messages.severity import Severity
 from .arithmetic import is_constant, triple
 from .course_models import PARAMETERS, lobes_of
 from .graph import NodeGraph
+from .hit_attributes import of_all_hits
 from .images import Images
 from .normals import bump, displacement_height
 from .shader_cache import ShaderCache, Sources
@@ -50,6 +51,7 @@ class Materials:
         self._numbers = {}
         self._attributes = []
         self._object_attributes = []
+        self._of_all_hits = of_all_hits()
 
     def number(self, material, asker):
         """Return the number of a material; None is Blender's default grey. asker is the object's name."""
@@ -84,7 +86,7 @@ class Materials:
 
     def attributes(self, numbers):
         """Return the names of the mesh attributes that these materials read, for export_mesh's wanted."""
-        return frozenset().union(*(self._attributes[number] for number in numbers))
+        return self._of_all_hits.union(*(self._attributes[number] for number in numbers))
 
 
 def _tells_apart(material):

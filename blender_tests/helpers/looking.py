@@ -68,8 +68,8 @@ def wall(x=0.0, material=1, **fields):
 BLACK = Material("black", lobes=())
 
 
-def raycast(direction=(0.0, 0.0, 1.0), length=10.0, option=0, flags=0, position=FIRST):
-    return Node(NodeKind.RAYCAST, option=option, flags=flags, inputs=(position, direction, length))
+def raycast(direction=(0.0, 0.0, 1.0), length=10.0, option=0, flags=0, position=FIRST, **fields):
+    return Node(NodeKind.RAYCAST, option=option, flags=flags, inputs=(position, direction, length), **fields)
 
 
 def corner_mesh():

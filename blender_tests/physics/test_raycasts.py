@@ -2,17 +2,14 @@
 
 import math
 
+import numpy as np
 import pytest
 from looking import BLACK, EXACT, FIRST, INFINITE, POSITION, corner_mesh, glowing, raycast, seen, wall
 from tiny_scenes import move, plane, rotate_x, rotate_y, sphere
 
-from addon.bindings.enums import (
-    NodeKind,
-    Ray,
-    VectorOperation,
-)
+from addon.bindings.enums import Domain, NodeKind, Ray, VectorOperation
 from addon.bindings.shading import Node, NodeRef
-from addon.bindings.snapshot import Instance
+from addon.bindings.snapshot import Instance, MeshAttribute, MeshData
 
 
 def cast(node, things=None, meshes=(), **fields):
@@ -68,3 +65,30 @@ def test_a_ray_passes_objects_that_are_hidden_from_it():
 def test_a_way_that_is_none_meets_nothing(way):
     materials = [glowing(INFINITE, raycast(**way)), BLACK]
     assert seen(materials, [plane(), plane(1, move(z=3.0))], samples=2) == pytest.approx([0, 0, 10])
+
+
+def _ceiling(**values):
+    """Return the mesh of a triangle below which the place of cast() is, and its attributes of corners."""
+    corners = [(-4.0, -4.0, 2.0), (8.0, -4.0, 2.0), (-4.0, 8.0, 2.0)]
+    attributes = [MeshAttribute(name, np.array(rows, np.float32), Domain.VERTEX) for name, rows in values.items()]
+    return MeshData("ceiling", corners, [(0, 2, 1)], attributes=tuple(attributes))
+
+
+def test_a_ray_reads_an_attribute_where_it_ends():
+    """The weights of the corners at (0.25, 0.5) are those of a map of the triangle."""
+    u, v = (0.25 + 4.0) / 12.0, (0.5 + 4.0) / 12.0
+    tint = [(0.9, 0.2, 0.1, 0.5), (0.3, 0.8, 0.4, 1.0), (0.1, 0.6, 0.7, 0.25)]
+    mesh = _ceiling(tint=tint, pair=[(0.2, 0.7)] * 3, number=[(0.25,), (0.5,), (0.75,)])
+    things = [plane(), Instance(mesh=0, materials=(1,))]
+
+    def read(name, flags=0, **fields):
+        return cast(raycast(option=3, flags=flags, name=name, **fields), things, [mesh])
+
+    expected = (1.0 - u - v) * np.array(tint[0]) + u * np.array(tint[1]) + v * np.array(tint[2])
+    assert read("tint") == pytest.approx(expected[:3], abs=EXACT)
+    assert read("tint", 2) == pytest.approx([expected[:3].mean()] * 3, abs=EXACT)
+    assert read("tint", 4) == pytest.approx([expected[3]] * 3, abs=EXACT)
+    assert read("number") == pytest.approx([0.25 + 0.25 * u + 0.5 * v] * 3, abs=EXACT)
+    assert read("pair", 2) == pytest.approx([0.2] * 3, abs=EXACT)
+    for missing in (read("other"), read("tint", length=1.5), read("tint", 1)):
+        assert missing == pytest.approx([0] * 3)

@@ -323,7 +323,8 @@ enum lancer_node_kind {
    * OCCLUSION's. option: number of rays. Returns a normal */
   LANCER_NODE_BEVEL = 41,
   /* inputs: position; direction; length, in those of the direction. option 0: 1 if there is a hit, 1 if of its own object, the
-   * distance; 1: position, 2: normal of the hit, else 0, 0, 0. flag 1: its own object alone */
+   * distance; 1: position, 2: normal of the hit, else 0, 0, 0; 3: the attribute `name` there, 0 if its mesh has none. flag 1: its
+   * own object alone; of an attribute flag 2: its mean, or the first of two numbers, 4: its alpha */
   LANCER_NODE_RAYCAST = 42,
   /* inputs: vector. option LANCER_INTERPOLATE_*. image: a cube of n x n x n floating-point voxels of four channels, read as
    * they are in memory, n texels wide and n * n high: layer z has the rows from n * z on. 0 ... 1 along each axis covers the

@@ -323,7 +323,7 @@ inline std::vector<NodeCase> all_cases(Random &random) {
   for (int i = 0; i < 4; ++i) {
     options(LANCER_NODE_OCCLUSION, 3, 4);
     options(LANCER_NODE_BEVEL, 3);
-    options(LANCER_NODE_RAYCAST, 3, 2);
+    options(LANCER_NODE_RAYCAST, 4, 8);
     options(LANCER_NODE_VOXELS, 3);
   }
   return cases;

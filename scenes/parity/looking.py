@@ -1,6 +1,7 @@
 """Nodes that look around a surface by rays: Ambient Occlusion, Bevel, Raycast."""
 
 import bpy
+import numpy as np
 
 from .. import parts
 from .catalogue import case, variants
@@ -265,6 +266,26 @@ def _beside(nodes):
 )
 def raycast_value(scene, value):
     _still_life(scene, _glow(value))
+    sky(scene)
+
+
+@variants(values={"number": "FLOAT", "color": "RGBA", "alpha": "ALPHA"}, since=_SINCE, bounces=0)
+def raycast_attribute(scene, kind):
+    """Attributes of other objects, whose own materials do not read them."""
+
+    def value(nodes):
+        node = nodes.add("ShaderNodeRaycast", Direction=_reflection(nodes), Length=6.0)
+        node.sample_attribute_items.new("RGBA" if kind == "ALPHA" else kind, "Tint")
+        next(socket for socket in node.inputs if socket.identifier == "Value_0").default_value = "Tint"
+        wanted = "Attribute_0_Alpha" if kind == "ALPHA" else "Attribute_0"
+        return next(socket for socket in node.outputs if socket.identifier == wanted)
+
+    _still_life(scene, _glow(value))
+    for thing in scene.objects:
+        if thing.type == "MESH" and "Tint" not in thing.data.attributes:
+            tint = thing.data.attributes.new("Tint", "FLOAT_COLOR", "CORNER")
+            values = np.random.default_rng(len(thing.data.loops)).uniform(0.1, 0.9, (len(thing.data.loops), 4))
+            tint.data.foreach_set("color", values.reshape(-1))
     sky(scene)
 
 

@@ -84,8 +84,24 @@ template <class F> Value<F> bevel_node(const Inputs<F> &in, const Site<F> &site,
 // Whether a ray can be sent along a direction of this length, which is in double.
 inline bool is_way(double squared_length) { return squared_length > 0.0 && std::isfinite(squared_length); }
 
+// Returns an attribute where a ray has met a surface. flags 2: its mean, or the first of two numbers; 4: its alpha.
+inline glm::vec3 attribute_of_hit(const Geometry &geometry, const Hit &hit, const Node &node) {
+  const Instance &instance = geometry.instances[hit.instance];
+  if (instance.kind != ShapeKind::Mesh)
+    return glm::vec3(0.0f);
+  const Mesh &mesh = geometry.meshes[instance.mesh];
+  const glm::vec4 value = attribute_at(mesh, node.name, hit.primitive, {hit.u, hit.v});
+  if (node.flags & 4)
+    return glm::vec3(value.w);
+  if (!(node.flags & 2))
+    return glm::vec3(value);
+  const MeshAttribute *attribute = find_attribute(mesh, node.name);
+  return glm::vec3(attribute && attribute->channels == 2 ? value.x : (value.x + value.y + value.z) / 3.0f);
+}
+
 // Raycast. option 0: whether it meets a surface, whether that is of its own object, and the distance; 1: the place; 2: the
-// normal there. flags 1: only its own object. moved: the site, which a bump may have moved from the place of the hit.
+// normal there; 3: an attribute there. flags 1: only its own object. moved: the site, which a bump may have moved from the
+// place of the hit.
 template <class F> Value<F> raycast_node(const Inputs<F> &in, const Site<F> &moved) {
   const F length_of_way = in.scalar(2), zero(0.0f);
   const Site<F> &site = moved.standing();
@@ -119,6 +135,8 @@ template <class F> Value<F> raycast_node(const Inputs<F> &in, const Site<F> &mov
       return glm::vec3(1.0f, hit.instance == place.surface.instance ? 1.0f : 0.0f, float(hit.t));
     if (in.node.option == 1)
       return o + d * float(hit.t);
+    if (in.node.option == 3)
+      return attribute_of_hit(*site.scene.geometry, hit, in.node);
     const Surface met = site.looking->rays->surface(ray, hit);
     return glm::dot(glm::dvec3(met.ng), ray.d) > 0.0 ? -met.ns : met.ns;
   }));

@@ -91,7 +91,7 @@ Shape shape_of(const lancer_node &node) {
   case LANCER_NODE_BEVEL:
     return {3, LANCER_MOST_NODE_RAYS + 1, false};
   case LANCER_NODE_RAYCAST:
-    return {3, 3, false};
+    return {3, 4, false};
   case LANCER_NODE_VECTOR_TRANSFORM:
   case LANCER_NODE_VOXELS:
     return {1, 3, false};

@@ -164,6 +164,16 @@ void corner_values(const Mesh &mesh, const MeshAttribute &attribute, uint32_t tr
     values[corner] = at_corner(mesh, attribute, triangle, corner);
 }
 
+glm::vec4 attribute_at(const Mesh &mesh, uint32_t name, uint32_t triangle, const glm::dvec2 &bary) {
+  const MeshAttribute *attribute = find_attribute(mesh, name);
+  if (!attribute)
+    return glm::vec4(0.0f);
+  glm::vec4 at[3];
+  corner_values(mesh, *attribute, triangle, at);
+  const glm::dvec4 a(at[0]), b(at[1]), c(at[2]);
+  return attribute->domain == Domain::Face ? at[0] : glm::vec4((1.0 - bary.x - bary.y) * a + bary.x * b + bary.y * c);
+}
+
 glm::vec2 uv_at(const Mesh &mesh, uint32_t name, uint32_t triangle, const glm::dvec2 &bary) {
   glm::vec2 corner[3];
   if (!corner_uvs(mesh, name, triangle, corner))
