@@ -75,6 +75,8 @@ def _read_file(image, path, tell, tile=0):
             return read_texels(image, source, tell, _space(image), tile, copy, plain.columns)
     except ValueError as error:
         return _unread_layers(image, error, tell, tile)
+    except _UnwrittenError as error:
+        return _unwritten(image, error, tell, tile)
     except (OSError, RuntimeError):
         return []
 
@@ -90,6 +92,8 @@ def _read_packed_layers(image, tell):
             return read_texels(image, source, tell, _space(source), columns=plain.columns)
     except ValueError as error:
         return _unread_layers(image, error, tell)
+    except _UnwrittenError as error:
+        return _unwritten(image, error, tell)
     except RuntimeError:
         return []
 
@@ -100,16 +104,31 @@ def _unread_layers(image, error, tell, tile=0):
     return [mid_grey(image, tile)]
 
 
+class _UnwrittenError(Exception):
+    """A temporary file cannot be written."""
+
+
 @contextlib.contextmanager
 def _temporary(data, extension):
-    """Yield the path of a file with these bytes, removed on exit."""
-    number, path = tempfile.mkstemp(extension, "lancer_", bpy.app.tempdir)
+    """Yield the path of a file with these bytes, removed on exit; raise _UnwrittenError if it cannot be written."""
+    path = None
     try:
-        with open(number, "wb") as file:
-            file.write(data)
+        try:
+            number, path = tempfile.mkstemp(extension, "lancer_", bpy.app.tempdir)
+            with open(number, "wb") as file:
+                file.write(data)
+        except OSError as error:
+            raise _UnwrittenError(error.strerror or str(error)) from None
         yield path
     finally:
-        os.remove(path)
+        if path is not None:
+            os.remove(path)
+
+
+def _unwritten(image, error, tell, tile=0):
+    text = f"image '{image.name}' needs a temporary file: {error} ({bpy.app.tempdir}, of Preferences > File Paths)"
+    tell(f"{text}; mid-grey is used", severity=Severity.WRONG)
+    return [mid_grey(image, tile)]
 
 
 def _read_tiles(image, tell):
@@ -145,8 +164,11 @@ def _read_packed(image, number, tell):
     packed = next((item for item in image.packed_files if getattr(item, "tile_number", 0) == number), None)
     if packed is None or packed.packed_file is None:
         return []
-    with _temporary(packed.packed_file.data, os.path.splitext(packed.filepath)[1]) as path:
-        return _read_decoded(image, path, tell, number)
+    try:
+        with _temporary(packed.packed_file.data, os.path.splitext(packed.filepath)[1]) as path:
+            return _read_decoded(image, path, tell, number)
+    except _UnwrittenError as error:
+        return _unwritten(image, error, tell, number)
 
 
 def _read_decoded(image, path, tell, tile=0, frame=None):

@@ -30,18 +30,19 @@ class Scratch:
     """The files of the images of an export."""
 
     def __init__(self):
-        self._limit = image_memory or int(_SHARE * machine_memory())
         self._file = None
         self._failed = False
 
     def stored(self, pictures, held, tell):
         """Return a list of the pictures; those beyond the limit have Blocks as texels. held: bytes of others in memory."""
         result = []
+        # Scratch of a window lives longer than a value of the preferences.
+        limit = image_memory or int(_SHARE * machine_memory())
         for picture in pictures:
             size = 0 if isinstance(picture.texels, Blocks) else picture.texels.nbytes
-            if held + size > self._limit and size >= _LEAST and not self._failed:
+            if held + size > limit and size >= _LEAST and not self._failed:
                 try:
-                    picture, size = self._moved(picture), 0
+                    picture, size = self._moved(picture, limit), 0
                 except OSError as error:
                     # A full disk must not end the render.
                     self._failed = True
@@ -51,11 +52,11 @@ class Scratch:
             result.append(picture)
         return result
 
-    def _moved(self, picture):
+    def _moved(self, picture, limit):
         """Return the picture with its texels in the file."""
         # A file that a scene reads is not written any more.
         if self._file is None or self._file.is_mapped:
-            self._file = _new_file(self._limit)
+            self._file = _new_file(limit)
         texels, file = picture.texels, self._file
         offset, gaps = file.size, 0
         is_straight = picture.alpha == AlphaMode.STRAIGHT and texels.shape[2] == 4

@@ -41,3 +41,14 @@ def test_a_full_disk_leaves_images_in_memory(tmp_path):
     assert got["moved"] == 0
     (line,) = [line for line in got["messages"] if "stay in memory" in line]
     assert "No space left on device" in line
+
+
+def test_a_full_disk_is_told_where_layers_need_it(tmp_path):
+    got = blenders.run(MODULE, tmp_path, "scratch_cases", "full_for_layers")
+    (line,) = got["messages"]
+    assert "needs a temporary file: No space left on device" in line and got["sizes"] == [[1, 1, 3]]
+
+
+def test_the_limit_follows_the_preferences(tmp_path):
+    before, after = blenders.run(MODULE, tmp_path, "scratch_cases", "changed_limit")
+    assert before == 0 and after > 0

@@ -3,19 +3,21 @@
 import errno
 import io
 import os
+import tempfile
 
 import bpy
 import numpy as np
 import stage
 from export_cases import ExportProbe, export_told
-from image_cases import image, show
+from image_cases import SIZE, image, show
 
 from addon import engine
 from addon.bindings.blocks import Blocks
 from addon.bindings.enums import AlphaMode, Pass
 from addon.bindings.session import Cancelled, Session
 from addon.bindings.snapshot import SceneSnapshot
-from addon.export import scratch
+from addon.export import image_sources, scratch
+from scenes.parity import image_files
 
 WIDTH, HEIGHT = 1030, 517
 
@@ -140,3 +142,33 @@ def full():
     finally:
         scratch.tempfile.TemporaryFile = made
     return {"moved": sum(isinstance(picture.texels, Blocks) for picture in snapshot.images), "messages": told.lines()}
+
+
+def full_for_layers():
+    """Export a file of layers, of which one is copied to a temporary file, when the disk has no room."""
+    stage.empty()
+    planes = {f"{part}.Pass.{shade}": np.full((SIZE, SIZE), 0.5) for part in "AB" for shade in "RGB"}
+    show(bpy.data.images.load(image_files.write_layers(os.path.join(tempfile.mkdtemp(), "layers"), planes)))
+
+    def refuse(*_):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    made, image_sources.tempfile.mkstemp = image_sources.tempfile.mkstemp, refuse
+    try:
+        snapshot, told = _exported()
+    finally:
+        image_sources.tempfile.mkstemp = made
+    return {"sizes": [list(picture.texels.shape) for picture in snapshot.images], "messages": told.lines()}
+
+
+def changed_limit():
+    """Return whether a Scratch moves images after the preference has become smaller."""
+    _build()
+    scratch.image_memory = 1 << 40
+    kept = scratch.Scratch()
+    pictures = _exported()[0].images
+    results = []
+    for scratch.image_memory in (1 << 40, 1):
+        found = kept.stored(pictures, 0, lambda *_, **__: None)
+        results.append(sum(isinstance(picture.texels, Blocks) for picture in found))
+    return results
