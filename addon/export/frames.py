@@ -7,7 +7,7 @@ from typing import NamedTuple
 import bpy
 
 ANIMATED = ("MOVIE", "SEQUENCE")
-_LAST_DIGITS = re.compile(r"(.*?)(\d+)(\D*)", re.DOTALL)
+_LAST_DIGITS = re.compile(r"(.*?)([0-9]+)([^0-9]*)", re.DOTALL)
 
 
 class Shown(NamedTuple):

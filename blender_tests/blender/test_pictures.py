@@ -147,3 +147,8 @@ def test_files_of_layers_that_cannot_be_read_are_told(case):
     got = case("damaged_layers")
     assert [np.array(picture["texels"]).tolist() for picture in got["images"]] == [[[[0.5, 0.5, 0.5]]]]
     assert len(got["messages"]) == 1 and "'layers' is a multilayer EXR that cannot be read (" in got["messages"][0]
+
+
+def test_frames_are_numbered_by_latin_digits(case):
+    # Blender finds digits by C's isdigit, which knows 0 to 9.
+    assert case("numbered") == ["frame007.png", "frame\u06637.png", "frame07\u0663.png"]

@@ -10,6 +10,7 @@ from export_cases import export_told
 
 from addon.bindings import snapshot
 from addon.bindings.enums import AlphaMode, NodeKind, Transfer
+from addon.export.frames import file_of_frame
 from addon.export.kept import Kept
 from addon.export.parts import Parts
 from addon.export.scene import ExportOptions, export_scene
@@ -277,3 +278,8 @@ def damaged_layers():
     item.name = "layers"
     show(item)
     return answer()
+
+
+def numbered():
+    """Return the names of frame 7 of files whose names have digits of Latin and of Arabic script."""
+    return [file_of_frame(f"frame{digits}.png", 7) for digits in ("003", "\u0663", "12\u0663")]
