@@ -115,7 +115,6 @@ uint32_t flags_of(uint32_t kind) {
   case LANCER_NODE_MAGIC:
   case LANCER_NODE_RADIAL_TILING:
   case LANCER_NODE_WIREFRAME:
-  case LANCER_NODE_RAYCAST:
     return 1;
   case LANCER_NODE_OCCLUSION:
     return 1 | 2;
@@ -125,6 +124,7 @@ uint32_t flags_of(uint32_t kind) {
   case LANCER_NODE_MIX:
     return 1 | 2;
   case LANCER_NODE_BUMP:
+  case LANCER_NODE_RAYCAST:
     return 1 | 2 | 4;
   case LANCER_NODE_IMAGE:
   case LANCER_NODE_ENVIRONMENT:
