@@ -21,6 +21,12 @@ def divide(scene, thing, rate=1.0, kind="CATMULL_CLARK", **fields):
     modifier.subdivision_type = kind
     for name, value in fields.items():
         setattr(modifier, name, value)
+    dice(scene, thing, modifier, rate)
+    return modifier
+
+
+def dice(scene, thing, modifier, rate):
+    """Lets Cycles replace the object's last Subdivision modifier. rate: in pixels."""
     if bpy.app.version >= _OF_MODIFIER:
         modifier.use_adaptive_subdivision = True
         modifier.adaptive_pixel_size = rate
@@ -28,7 +34,6 @@ def divide(scene, thing, rate=1.0, kind="CATMULL_CLARK", **fields):
         scene.cycles.feature_set = "EXPERIMENTAL"
         thing.cycles.use_adaptive_subdivision = True
         thing.cycles.dicing_rate = rate
-    return modifier
 
 
 def _glowing(output, scale=1.0):

@@ -226,7 +226,7 @@ class _Stage:
             modifier.levels = modifier.render_levels = 0
             cycles.feature_set, self.cube.cycles.use_adaptive_subdivision = "EXPERIMENTAL", True
         # Small enough for more than the least number of segments in a small picture.
-        cycles.dicing_rate = 0.25
+        cycles.dicing_rate = 0.5
         cycles.dicing_camera = stage.link("Beside", self.camera.data, (3.0, -6.0, 3.0))
         for cycles.max_subdivisions in (1, 12):
             yield now(cycles, self.cube.cycles)

@@ -1,16 +1,22 @@
 """Records of images as Blender's data; pixels come of seeds, so that a scene is short in print."""
 
 import os
+import tempfile
 
 import bpy
 import numpy as np
 
-from scenes.parity import image_files, images, png
+from scenes.parity import avi, image_files, images, png
+
+# Files of a sequence or of tiles, by number; and frames of a movie.
+_NUMBERS = {"SEQUENCE": (1, 2, 3), "TILED": (1001, 1002, 1011)}
+_FRAMES = 3
 
 
-def _pixels(fields):
+def _pixels(fields, number=0):
+    """Return the pixels of an image, or those of one of its files or frames."""
     width, height = fields["size"]
-    source = np.random.default_rng(fields["seed"])
+    source = np.random.default_rng(fields["seed"] + 100 * number)
     pixels = np.ones((height, width, 4))
     pixels[..., :3] = source.uniform(0.05, 0.95, (height, width, 3))
     if "peak" in fields:
@@ -39,11 +45,37 @@ def _build(name, fields, space):
     if kind == "FLOAT":
         # Another colour space or alpha mode takes the pixels away from an image that is in no file.
         return images.image(name, pixels, space, is_float=True, alpha_mode=alpha_mode, pack=False)
-    if kind == "BYTE":
+    source = fields.get("source", "FILE")
+    if source == "MOVIE":
+        image = _movie(fields)
+    elif source != "FILE":
+        image = _of_many_files(fields, source)
+    elif kind == "BYTE":
         image = images.image(name, pixels, "Non-Color")
     else:
         image = bpy.data.images.load(_write(os.path.join(bpy.app.tempdir, name), pixels, kind, fields.get("grey")))
     image.colorspace_settings.name, image.alpha_mode = space, alpha_mode
+    return image
+
+
+def _movie(fields):
+    path = os.path.join(tempfile.mkdtemp(dir=bpy.app.tempdir), "movie.avi")
+    with open(path, "wb") as file:
+        file.write(avi.encode([_pixels(fields, number)[..., :3] for number in range(_FRAMES)]))
+    return bpy.data.images.load(path)
+
+
+def _of_many_files(fields, source):
+    folder, numbers = tempfile.mkdtemp(dir=bpy.app.tempdir), _NUMBERS[source]
+    for number in numbers:
+        stem = os.path.join(folder, f"part.{number:04}")
+        path = _write(stem, _pixels(fields, number), fields["format"], fields.get("grey"))
+    image = bpy.data.images.load(path.replace(f"{numbers[-1]:04}", f"{numbers[0]:04}"))
+    image.source = source
+    if source == "TILED":
+        image.filepath = image.filepath.replace(str(numbers[0]), "<UDIM>")
+        for number in numbers[1:]:
+            image.tiles.new(number)
     return image
 
 

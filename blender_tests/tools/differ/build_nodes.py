@@ -48,6 +48,9 @@ def build_node(tree, name, fields, find):
         if isinstance(value, str) and value.startswith("@"):
             value = find(value)
         _set(node, setting, value)
+    if "user" in fields:
+        own = node.image_user
+        own.frame_duration, own.frame_start, own.frame_offset, own.use_cyclic, own.use_auto_refresh = fields["user"]
     if "output" in fields:
         value = fields["output"]
         socket = node.outputs[0]

@@ -6,6 +6,7 @@ import bpy
 from mathutils import Matrix
 
 from scenes import parts
+from scenes.parity import subdivisions
 
 from . import build_images, build_meshes, build_nodes, build_photometry
 
@@ -204,6 +205,8 @@ class Builder:
         modifier = thing.modifiers.new(name, fields["type"])
         for setting, value in fields.get("settings", {}).items():
             setattr(modifier, setting, value)
+        if "dicing_rate" in fields:
+            subdivisions.dice(self.scene, thing, modifier, fields["dicing_rate"])
 
     def _collection(self, name, fields):
         collection = self.things[name] = bpy.data.collections.new(name)

@@ -1,4 +1,4 @@
-"""Random images: bit depths, channels, alpha, colour spaces; and pictures of skies."""
+"""Random images: bit depths, channels, alpha, colour spaces; sequences, movies and tiles; and pictures of skies."""
 
 from .record import Record
 
@@ -7,6 +7,9 @@ _SPACES = {
     "sRGB": 6, "Non-Color": 3, "Linear": 2, "Filmic sRGB": 1, "ACEScg": 1, "Display P3": 1, "AgX Base sRGB": 1, "Rec.1886": 1,
     "Linear Rec.2020": 1,
 }  # fmt: skip
+# Formats of which sequences and tiles are made, and the shares of sources.
+_OF_MANY_FILES = ("PNG8", "PNG16", "TIFF", "EXR 32")
+_SOURCES = {"FILE": 6, "SEQUENCE": 2, "TILED": 2}
 # Formats that a single channel of grey is written to.
 _GREY = ("TIFF", "EXR 16", "EXR 32")
 
@@ -18,8 +21,17 @@ def image(dice, number):
         fields["grey"] = True
     else:
         fields["alpha"] = dice.pick(("none", "none", "smooth", "cut"))
+    if kind in _OF_MANY_FILES:
+        fields["source"] = dice.pick(_SOURCES)
+    elif kind == "BYTE" and dice.chance(0.2):
+        fields["source"] = "MOVIE"
     fields["alpha_mode"] = dice.pick(("STRAIGHT", "STRAIGHT", "PREMUL", "CHANNEL_PACKED", "NONE"))
     return Record("image", f"Image {number}", {**fields, "seed": dice.whole(0, 99)})
+
+
+def user(dice):
+    """Which frame of a sequence or a movie a node shows: length, start, offset, cyclic, Auto Refresh."""
+    return [dice.whole(0, 4), dice.whole(-3, 3), dice.whole(-2, 2), dice.chance(0.5), dice.chance(0.8)]
 
 
 def sky(dice):

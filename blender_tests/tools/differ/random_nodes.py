@@ -1,6 +1,6 @@
 """Random node trees: from the output upstream, each input left alone, set, or linked to a node that gives a value for it."""
 
-from . import closure_kinds, fact_kinds, node_kinds, random_properties
+from . import closure_kinds, fact_kinds, node_kinds, random_images, random_properties
 from .record import Record
 
 UV_MAPS = ("UVMap", "Second", "", "Missing")
@@ -87,6 +87,9 @@ class Trees:
             return self._passed_on(tree, self._zone(tree, wanted, depth))
         left_out = self.left_out.get(tree, ())
         kinds = {name: kind.weight for name, kind in _VALUES.items() if name not in left_out}
+        if self.images and "ShaderNodeTexImage" in kinds:
+            # A scene that has images shows them.
+            kinds["ShaderNodeTexImage"] = 8 * _VALUES["ShaderNodeTexImage"].weight
         return self._passed_on(tree, self._node(tree, self.dice.pick(kinds), wanted, depth, _VALUES))
 
     def _passed_on(self, tree, link):
@@ -209,6 +212,7 @@ class Trees:
         elif special == "image":
             if self.images and dice.chance(0.97):
                 props["image"] = f"@{dice.pick(self.images)}"
+                more["user"] = random_images.user(dice)
         elif special == "photometry":
             props["mode"] = "INTERNAL"
             if self.luminaires and dice.chance(0.97):

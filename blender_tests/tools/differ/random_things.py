@@ -183,7 +183,10 @@ class Things:
             )
         )
         fields = {
-            "SUBSURF": {"levels": 0, "render_levels": dice.whole(1, 2)},
+            "SUBSURF": {
+                "levels": 0, "render_levels": dice.whole(1, 2),
+                "subdivision_type": dice.pick(("CATMULL_CLARK", "CATMULL_CLARK", "SIMPLE")),
+            },
             "MIRROR": {"use_axis": [True, False, False], "use_bisect_axis": [True, False, False]},
             "ARRAY": {
                 "count": 2, "use_relative_offset": False, "use_constant_offset": True,
@@ -197,7 +200,10 @@ class Things:
             },
             "DISPLACE": {"strength": dice.number(-0.2, 0.2)},
         }.get(kind, {})  # fmt: skip
-        self.records.append(Record("modifier", f"{kind.title()}", {"object": f"@{name}", "type": kind, "settings": fields}))
+        record = {"object": f"@{name}", "type": kind, "settings": fields}
+        if kind == "SUBSURF" and dice.chance(0.4):
+            record["dicing_rate"] = dice.number(1.0, 8.0)
+        self.records.append(Record("modifier", f"{kind.title()}", record))
 
     def _instances(self):
         """The first thing again, by a collection or on the corners or faces of another mesh."""
