@@ -9,13 +9,10 @@ import blenders
 import numpy as np
 import pytest
 from blenders import MODULE, PROGRAM
+from stored import near
 
 pytestmark = pytest.mark.parametrize("which", [MODULE, PROGRAM])
 H = math.sqrt(0.5)  # of the normals of slopes of 45 degrees
-
-
-def near(value, limit=1e-6):
-    return pytest.approx(value, rel=limit, abs=limit)
 
 
 @pytest.fixture

@@ -51,8 +51,7 @@ def test_linked_objects_are_divided_once(case):
 
 def test_creases_of_a_border_keep_its_corners(case):
     reach, divides_cage = case("creased_border")
-    # Both coordinates of a corner are 1 in single precision. Before 4.5 Cycles divides what
-    # the modifier has made of the square.
+    # The corner is at 1 along both axes, in single precision. Before 4.5 Cycles divides the modifier's mesh, not the square.
     assert abs(reach - 1.0) < 1e-6 or not divides_cage
 
 

@@ -35,7 +35,7 @@ private:
   std::vector<Probe> probes_;
   std::vector<Ray> rays_;
   std::vector<uint32_t> instance_of_;
-  // Of the hits of a probe.
+  // Hits of one probe.
   std::vector<Surface> surfaces_;
   std::vector<glm::vec3> weights_;
 };
