@@ -7,6 +7,8 @@ import bpy
 from .attributes import attribute_name
 
 _EXISTS = hasattr(bpy.types, "ShaderNodeRaycast")
+# Names by which Cycles gives what no mesh has as an attribute.
+COMPUTED = {"generated", "generated_transform", "N", "Ng", "undisplaced", "tangent", "tangent_sign"}
 _OUTPUT = re.compile(r"Attribute_(\d+)(_Alpha)?")
 
 

@@ -3,7 +3,7 @@
 from ..bindings.enums import Coordinate, NodeKind, VectorOperation
 from .attributes import attribute_name
 from .coordinates import coordinate
-from .hit_attributes import sampled_name
+from .hit_attributes import COMPUTED, sampled_name
 from .settings import occlusion_distance, world_of
 
 _INSIDE, _ALONE = 1, 2  # flags of OCCLUSION
@@ -46,7 +46,9 @@ def _raycast(graph, site, output):
     if name not in _HIT_FACTS and name not in _HIT_PLACES:
         attribute, is_alpha = sampled_name(site.node, name)
         option, flags = _ATTRIBUTE, flags | (_ALPHA if is_alpha else _MEAN if is_number else 0)
-        if not attribute:
+        if attribute in COMPUTED:
+            graph.tell(site, f"'{attribute}' of the surface that is hit is computed by Cycles alone, 0 is used")
+        if not attribute and not is_alpha:
             return 0.0 if is_number else (0.0, 0.0, 0.0)
     position = graph.linked(site, ("Position",), None, evaluated=True)
     if position is None:
@@ -55,8 +57,8 @@ def _raycast(graph, site, output):
     if direction is None:
         direction = graph.normal if graph.normal != _NO_NORMAL else coordinate(graph, Coordinate.SHADING_NORMAL)
     length = graph.parameter(site, ("Length",), 1.0)
-    named = {"name": attribute_name(attribute)} if attribute else {}
-    value = graph.emit(NodeKind.RAYCAST, position, direction, length, option=option, flags=flags, **named)
+    name_of_core = attribute_name(attribute) if attribute else ""
+    value = graph.emit(NodeKind.RAYCAST, position, direction, length, option=option, flags=flags, name=name_of_core)
     return graph.component(value, _HIT_FACTS.get(name, 0)) if is_number else value
 
 

@@ -90,5 +90,7 @@ def test_a_ray_reads_an_attribute_where_it_ends():
     assert read("tint", 4) == pytest.approx([expected[3]] * 3, abs=EXACT)
     assert read("number") == pytest.approx([0.25 + 0.25 * u + 0.5 * v] * 3, abs=EXACT)
     assert read("pair", 2) == pytest.approx([0.2] * 3, abs=EXACT)
-    for missing in (read("other"), read("tint", length=1.5), read("tint", 1)):
+    for missing in (read("other"), read("tint", length=1.5), read("tint", 1), read("tint", 4, length=1.5)):
         assert missing == pytest.approx([0] * 3)
+    # As in Cycles, what a surface lacks has an alpha; what no ray meets has none.
+    assert read("other", 4) == pytest.approx([1] * 3)

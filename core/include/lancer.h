@@ -323,8 +323,8 @@ enum lancer_node_kind {
    * OCCLUSION's. option: number of rays. Returns a normal */
   LANCER_NODE_BEVEL = 41,
   /* inputs: position; direction; length, in those of the direction. option 0: 1 if there is a hit, 1 if of its own object, the
-   * distance; 1: position, 2: normal of the hit, else 0, 0, 0; 3: the attribute `name` there, 0 if its mesh has none. flag 1: its
-   * own object alone; of an attribute flag 2: its mean, or the first of two numbers, 4: its alpha */
+   * distance; 1: position, 2: normal of the hit, else 0, 0, 0; 3: the attribute `name` there, 0 with alpha 1 if its mesh has
+   * none. flag 1: its own object alone; of an attribute flag 2: its mean, or the first of two numbers, 4: its alpha */
   LANCER_NODE_RAYCAST = 42,
   /* inputs: vector. option LANCER_INTERPOLATE_*. image: a cube of n x n x n floating-point voxels of four channels, read as
    * they are in memory, n texels wide and n * n high: layer z has the rows from n * z on. 0 ... 1 along each axis covers the
@@ -610,8 +610,8 @@ LANCER_API lancer_status lancer_compute_sky(uint32_t model, double elevation, do
  *                incidence. Below k = 1 the albedo would exceed 1 towards the horizon: cosines are clamped to at least
  *                m = max(color)^(1/(1 - k)), where it is 1, and 2 pi/(k + 1) becomes 2 pi ((1 - q)/(k + 1) + q/2), q = m^(k + 1)
  * The following are the lobes of Blender's shader nodes, as Cycles of the running version defines them. roughness is the
- * socket's: alpha is its square (DIFFUSE, SHEEN, VELVET, SUBSURFACE: the value itself); anisotropy and rotation turn and stretch the lobe
- * along tangent.
+ * socket's: alpha is its square (DIFFUSE, SHEEN, VELVET, SUBSURFACE: the value itself); anisotropy and rotation turn and
+ * stretch the lobe along tangent.
  *   DIFFUSE      Oren-Nayar of roughness; 0 is LAMBERT. option 0: before Blender 4.3, 1: energy-preserving, from 4.3
  *   GLOSSY       a metal of constant color, with distribution
  *   GLASS        reflection and refraction by Fresnel of ior, rough or smooth, with distribution

@@ -167,7 +167,7 @@ void corner_values(const Mesh &mesh, const MeshAttribute &attribute, uint32_t tr
 glm::vec4 attribute_at(const Mesh &mesh, uint32_t name, uint32_t triangle, const glm::dvec2 &bary) {
   const MeshAttribute *attribute = find_attribute(mesh, name);
   if (!attribute)
-    return glm::vec4(0.0f);
+    return {0.0f, 0.0f, 0.0f, 1.0f};
   glm::vec4 at[3];
   corner_values(mesh, *attribute, triangle, at);
   const glm::dvec4 a(at[0]), b(at[1]), c(at[2]);

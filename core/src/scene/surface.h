@@ -62,7 +62,7 @@ const MeshAttribute *find_attribute(const Mesh &mesh, uint32_t name);
 // missing.
 void corner_values(const Mesh &mesh, const MeshAttribute &attribute, uint32_t triangle, glm::vec4 (&values)[3]);
 
-// Returns an attribute within a triangle; 0 if the mesh has none of this name. bary: weights of corners 1 and 2.
+// Returns an attribute within a triangle; 0 with w of 1 if the mesh has none of this name. bary: weights of corners 1 and 2.
 glm::vec4 attribute_at(const Mesh &mesh, uint32_t name, uint32_t triangle, const glm::dvec2 &bary);
 
 // Reads the texture coordinates at a triangle's corners: the mesh's own (name 0) or an attribute's. Returns false if there are
