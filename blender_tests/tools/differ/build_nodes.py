@@ -51,6 +51,9 @@ def build_node(tree, name, fields, find):
     if "user" in fields:
         own = node.image_user
         own.frame_duration, own.frame_start, own.frame_offset, own.use_cyclic, own.use_auto_refresh = fields["user"]
+    if "sampled" in fields:
+        node.sample_attribute_items.new("RGBA", "Sampled")
+        _socket(node.inputs, "Value_0").default_value = fields["sampled"]
     if "output" in fields:
         value = fields["output"]
         socket = node.outputs[0]

@@ -38,10 +38,24 @@ FACTS = {
     "ShaderNodeBevel": Kind({"Radius": ("f", 0.0, 0.3), "Normal": NORMAL}, {"Normal": "v"}, {"samples": (2, 4, 8)}, 0.3),
     "ShaderNodeRaycast": Kind(
         {"Position": TEXTURE, "Direction": V, "Length": ("f", 0.2, 5.0)},
-        {"Is Hit": "f", "Self Hit": "f", "Hit Distance": "f", "Hit Position": "v", "Hit Normal": "v"},
+        {
+            "Is Hit": "f", "Self Hit": "f", "Hit Distance": "f", "Hit Position": "v", "Hit Normal": "v", "Attribute_0": "c",
+            "Attribute_0_Alpha": "f",
+        },
         {"only_local": SWITCH},
         0.3,
+        special=("sampled",),
+    ),
+    "ShaderNodeTexPointDensity": Kind(
+        {"Vector": TEXTURE},
+        {"Color": "c", "Density": "f"},
+        {
+            "space": ("OBJECT", "WORLD"), "interpolation": ("Linear", "Closest", "Cubic"), "resolution": (4, 12),
+            "radius": (0.2, 0.5),
+        },
+        0.3,
+        special=("points",),
     ),
 }  # fmt: skip
-# Nodes that send rays from a surface, which worlds and lamps do not have.
-LOOKING = {"ShaderNodeAmbientOcclusion", "ShaderNodeBevel", "ShaderNodeRaycast"}
+# Nodes of surfaces alone: those that send rays, and Point Density, which is undefined in worlds and lamps.
+OF_SURFACES = {"ShaderNodeAmbientOcclusion", "ShaderNodeBevel", "ShaderNodeRaycast", "ShaderNodeTexPointDensity"}

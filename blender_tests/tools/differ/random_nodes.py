@@ -18,7 +18,7 @@ WORLDS = ("World", "Other world")
 _VALUES = {**node_kinds.VALUES, **fact_kinds.FACTS}
 # Nodes about surfaces, which worlds and lamps are not, and about objects, which worlds are not: there Cycles reads the
 # transform of an object, and crashes now and then.
-_OF_SURFACES = {"ShaderNodeNormalMap", "ShaderNodeTangent", "ShaderNodeBump"} | fact_kinds.LOOKING
+_OF_SURFACES = {"ShaderNodeNormalMap", "ShaderNodeTangent", "ShaderNodeBump"} | fact_kinds.OF_SURFACES
 _OF_OBJECTS = _OF_SURFACES | {"ShaderNodeTexIES"}
 # Infinite where light comes from afar.
 _OF_LENGTHS = {"ShaderNodeLightFalloff"}
@@ -228,6 +228,11 @@ class Trees:
         elif special == "object":
             if self.objects and dice.chance(0.15):
                 props["object"] = f"@{dice.pick(self.objects)}"
+        elif special == "points":
+            if self.objects and dice.chance(0.9):
+                props["object"] = f"@{dice.pick(self.objects)}"
+        elif special == "sampled":
+            more["sampled"] = dice.pick(ATTRIBUTES)
         elif special == "uv_map":
             props["uv_map"] = dice.pick(UV_MAPS)
         elif special == "attribute":
