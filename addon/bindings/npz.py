@@ -35,25 +35,26 @@ def register(cls):
 def save_npz(record, path):
     """Write a record to a path or an open binary file."""
     arrays = {}
-
-    def encode(value):
-        # numpy makes rows of blocks when it writes them, an image at a time.
-        if isinstance(value, (np.ndarray, Blocks)):
-            key = f"array_{len(arrays)}"
-            arrays[key] = value
-            return {"array": key}
-        if dataclasses.is_dataclass(value):
-            fields = {f.name: encode(getattr(value, f.name)) for f in dataclasses.fields(value)}
-            return {"type": type(value).__name__, "fields": fields}
-        if isinstance(value, tuple):
-            return [encode(item) for item in value]
-        if isinstance(value, np.generic):
-            return value.item()
-        return value
-
-    tree = json.dumps(encode(record)).encode("utf-8")
+    tree = json.dumps(_encoded(record, arrays)).encode("utf-8")
     with _opened(path, "wb") as file:
         np.savez(file, **{_TREE: np.frombuffer(tree, np.uint8)}, **arrays)
+
+
+def _encoded(value, arrays):
+    """Return a value as JSON holds it; its arrays go into a dict."""
+    # numpy makes rows of blocks when it writes them, an image at a time.
+    if isinstance(value, (np.ndarray, Blocks)):
+        key = f"array_{len(arrays)}"
+        arrays[key] = value
+        return {"array": key}
+    if dataclasses.is_dataclass(value):
+        fields = {f.name: _encoded(getattr(value, f.name), arrays) for f in dataclasses.fields(value)}
+        return {"type": type(value).__name__, "fields": fields}
+    if isinstance(value, tuple):
+        return [_encoded(item, arrays) for item in value]
+    if isinstance(value, np.generic):
+        return value.item()
+    return value
 
 
 def load_npz(path):
@@ -80,17 +81,18 @@ def _read(file):
     with np.load(file, allow_pickle=False) as archive:
         if _TREE not in archive:
             raise _NoTree
+        return _decoded(json.loads(archive[_TREE].tobytes().decode("utf-8")), archive)
 
-        def decode(value):
-            if isinstance(value, list):
-                return tuple(decode(item) for item in value)
-            if isinstance(value, dict):
-                if "array" in value:
-                    return archive[value["array"]]
-                return _record(_TYPES[value["type"]], {name: decode(item) for name, item in value["fields"].items()})
-            return value
 
-        return decode(json.loads(archive[_TREE].tobytes().decode("utf-8")))
+def _decoded(value, archive):
+    """Return the value that _encoded() has made JSON of; its arrays come from an archive."""
+    if isinstance(value, list):
+        return tuple(_decoded(item, archive) for item in value)
+    if isinstance(value, dict):
+        if "array" in value:
+            return archive[value["array"]]
+        return _record(_TYPES[value["type"]], {name: _decoded(item, archive) for name, item in value["fields"].items()})
+    return value
 
 
 def _record(cls, fields):
