@@ -15,6 +15,7 @@ from .texels import mid_grey, read_texels
 from .tiles import is_generated, path_of_tile, regenerated, shows_memory
 
 _SHOWS_STROKES = bpy.app.version >= (5, 2)  # older Cycles shows the file of an image with unsaved strokes
+_SHOWS_ONE_TILE_EVERYWHERE = bpy.app.version < (4, 2, 7) or (4, 3) <= bpy.app.version < (4, 4)  # as no tile, but as an image
 _SHOWS_PACKED_LAYERS = bpy.app.version >= (4, 3)  # older Cycles finds no pixels, as scripts do
 
 
@@ -143,6 +144,8 @@ def _read_tiles(image, tell):
             text = f"tile {tile.number} of image '{image.name}' cannot be read ({path}), magenta is used"
             tell(text, severity=Severity.WRONG)
             found = [missing(image, tile.number)] if HAS_TEXEL else []
+        if _SHOWS_ONE_TILE_EVERYWHERE and len(image.tiles) == 1:
+            found = [picture.replaced(tile=0) for picture in found]
         yield from found
 
 

@@ -12,6 +12,7 @@ from ..host.by_scene import identity
 from ..messages.severity import Severity
 from .frames import shown
 from .image_sources import read_all, read_memory
+from .missing import is_black, missing
 from .scratch import Scratch
 
 # Takes the place of an image that is not used any more, until another one gets its number.
@@ -31,6 +32,7 @@ class Images:
         self._kept = kept
         self._scratch = Scratch()
         self._ranges = {}
+        self._lost = set()  # keys of _ranges
         self._tables = {}
         self._free = set()  # numbers
 
@@ -50,13 +52,16 @@ class Images:
                 elif self._kept is not None:
                     read = self._kept.pictures(read)
                 pictures = read(image, seen, tell)
+            if not pictures:
+                self._lost.add(key)
+                pictures = [missing(image)] if is_black(image) else []
             self._ranges[key] = (self.repeat(pictures), len(pictures)) if pictures else None
-        if self._ranges[key] is None:
-            tell(
-                f"image '{image.name}' has no pixels ({seen.path or image.filepath or 'empty'}), magenta is used",
-                severity=Severity.WRONG,
-            )
-        return self._ranges[key]
+        found = self._ranges[key]
+        if key in self._lost:
+            text = f"has no pixels ({seen.path or image.filepath or 'empty'})"
+            color = "magenta is used" if found is None else "black is used, as in Cycles"
+            tell(f"image '{image.name}' {text}, {color}", severity=Severity.WRONG)
+        return found
 
     def _reader(self, read, in_memory):
         """Return a function like read(image, seen, tell) that returns a list, with texels beyond the limit in a file."""
@@ -93,6 +98,7 @@ class Images:
         for key, found in list(self._ranges.items()):
             if key[0] in changed or found is not None and found[0] not in used:
                 del self._ranges[key]
+                self._lost.discard(key)
         self._tables = {key: number for key, number in self._tables.items() if number in used}
         kept = {number for found in self._ranges.values() if found is not None for number in range(found[0], sum(found))}
         for number in range(len(self.list)):
@@ -103,6 +109,8 @@ class Images:
 
 class NoPictures:
     """A stand-in for Images that reads none, for panels and for a lamp alone."""
+
+    list = ()
 
     def numbers(self, image, user, tell, in_memory=False):
         return 0, 1

@@ -133,7 +133,7 @@ def _mapped(graph, node, values, evaluated=False):
         if not evaluated:
             t = graph.op(m.MULTIPLY, t, graph.op(m.GREATER_THAN, steps, 0.0))
     elif kind in ("SMOOTHSTEP", "SMOOTHERSTEP"):
-        t = smooth_step(graph, graph.emit(NodeKind.CLAMP, t, 0.0, 1.0), kind == "SMOOTHERSTEP")
+        t = _smooth_step(graph, graph.emit(NodeKind.CLAMP, t, 0.0, 1.0), kind == "SMOOTHERSTEP")
     result = graph.op(m.MULTIPLY_ADD, t, graph.op(m.SUBTRACT, to_high, to_low), to_low)
     return _in_range(graph, result, to_low, to_high) if node.clamp and kind in ("LINEAR", "STEPPED") else result
 
@@ -144,7 +144,7 @@ def _in_range(graph, value, first, last):
     return graph.emit(NodeKind.CLAMP, value, low, high)
 
 
-def smooth_step(graph, t, twice=False):
+def _smooth_step(graph, t, twice=False):
     """Return t^2 (3 - 2 t), or if twice t^3 (t (6 t - 15) + 10), for t between 0 and 1."""
     m = MathOperation
     square = graph.op(m.MULTIPLY, t, t)

@@ -1,5 +1,7 @@
 """Image nodes: the image, its coordinates, interpolation and extension."""
 
+import bpy
+
 from ..bindings.enums import (
     Coordinate,
     Environment,
@@ -14,7 +16,7 @@ from ..messages.severity import Severity
 from .arithmetic import divide, each
 from .coordinates import coordinate, mapping_matrix
 from .maths import transformed
-from .missing import HAS_TEXEL, MAGENTA, missing
+from .missing import HAS_TEXEL, MAGENTA, is_black, missing
 
 _INTERPOLATION = {
     "Linear": Interpolation.LINEAR,
@@ -23,24 +25,28 @@ _INTERPOLATION = {
     "Smart": Interpolation.CUBIC,
 }
 _STRAIGHT_COLOR = 256
+_TILE_OF_EACH_SIDE = 512
+# Cycles projects tile 1001 alone from the sides of a box, before 5.2 as an image without tiles.
+_BOX_HAS_TILES = bpy.app.version >= (5, 2)
 _AXES = {"NONE": None, "X": 0, "Y": 1, "Z": 2}
 
 
 def _image_texture(graph, site, output):
     node = site.node
     is_alpha = output.identifier == "Alpha"
-    found = _picture(graph, site)
+    found, flags = _picture(graph, site), 0
+    if found is not None and node.projection == "BOX" and node.image.source == "TILED":
+        found, flags = _tile_of_boxes(graph, node.image, *found), _TILE_OF_EACH_SIDE * _BOX_HAS_TILES
     if found is None:
-        if not (HAS_TEXEL and node.extension == "CLIP") or graph.images is None:
+        is_even = node.extension != "CLIP" and (node.image is None or not is_black(node.image))
+        if is_even or not HAS_TEXEL or graph.images is None:
             return 1.0 if is_alpha else MAGENTA
         found = graph.images.repeat([missing(node.image)]), 1
     first, count = found
-    if node.projection == "BOX" and count > 1:
-        first, count = _tile_of_boxes(graph, site, first, count)
     vector = graph.linked(site, ("Vector",), None)
     if vector is None:
         vector = coordinate(graph, Coordinate.UV)
-    flags = Extension[node.extension] | _INTERPOLATION[node.interpolation] << 4
+    flags |= Extension[node.extension] | _INTERPOLATION[node.interpolation] << 4
     if node.outputs["Alpha"].is_linked and _has_color_under_alpha(node.image):
         flags |= _STRAIGHT_COLOR
     value = graph.emit(
@@ -55,12 +61,12 @@ def _image_texture(graph, site, output):
     return graph.emit(NodeKind.ALPHA, value) if is_alpha else value
 
 
-def _tile_of_boxes(graph, site, first, count):
-    """Return the range of tile 1001, which alone is projected from the sides of a box."""
-    if not HAS_TEXEL:
-        graph.tell(site, "projects tile 1001 alone from the sides of a box", "feature:box projection of tiles")
-    places = [number for number in range(first, first + count) if graph.images.list[number].tile == 1001]
-    return places[0] if places else graph.images.repeat([missing(site.node.image)]), 1
+def _tile_of_boxes(graph, image, first, count):
+    """Return the range of tile 1001 among the tiles of an image; None if it has no such tile."""
+    numbers = [picture.tile for picture in graph.images.list[first : first + count]]
+    # A set of one tile may be an image without tiles.
+    known = [tile.number for tile in image.tiles] if not any(numbers) else numbers
+    return (first + known.index(1001), 1) if 1001 in known else None
 
 
 def _environment_texture(graph, site, output):

@@ -235,8 +235,8 @@ enum lancer_node_kind {
   LANCER_NODE_ATTRIBUTE = 1, /* name: of the attribute; "" = the mesh's own colours; flags: LANCER_ATTRIBUTE_* */
   /* images [image, image + image_count): one image or the tiles of one; inputs: vector. option: projection LANCER_PROJECT_*;
    * flags: extension LANCER_EXTEND_* in bits 0-3, interpolation LANCER_INTERPOLATE_* in bits 4-7, 256 = return straight
-   * colour (divided by alpha) according to the image's alpha mode; input 1: blend of BOX. The vector is used as given: 0 ...
-   * 1 covers the image */
+   * colour (divided by alpha) according to the image's alpha mode, 512 = each side of BOX shows the tile of its place, else
+   * the first image; input 1: blend of BOX. The vector is used as given: 0 ... 1 covers the image */
   LANCER_NODE_IMAGE = 2,
   /* as IMAGE, with a direction as vector; option LANCER_ENVIRONMENT_*; CUBE takes six images: +x -x +y -y +z -z, upright as
    * seen from inside with +z up; +z and -z as seen by a viewer who faces +y and then looks up or down */

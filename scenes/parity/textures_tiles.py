@@ -68,18 +68,28 @@ def _of(image, output, scale=None, offset=-0.4, **props):
     return value
 
 
-@variants(values=_LOST, size=size_of(16), bounces=0, quick=True)
+def _in_wide_gamut(image):
+    """Copies whose colours are converted to the working space."""
+    copies = image.copy(), image.copy()
+    for copy, mode in zip(copies, ("STRAIGHT", "CHANNEL_PACKED"), strict=True):
+        copy.alpha_mode = mode
+        copy.colorspace_settings.name = "Filmic sRGB"
+    return copies
+
+
+@variants(values=_LOST, size=size_of(20), bounces=0, quick=True)
 def image_lost(scene, make):
     """Colour and alpha of an image without pixels: by extension, by projection, by alpha mode and as data."""
     mesh, image = tile_mesh(), make()
     plain, data, packed = (image.copy() for _ in range(3))
     plain.alpha_mode, packed.alpha_mode = "NONE", "CHANNEL_PACKED"
     data.colorspace_settings.name = "Non-Color"
+    others = plain, data, packed, *_in_wide_gamut(image)
     tiles = [(mesh, _of(image, output, 1.8, extension="CLIP")) for output in ("Color", "Alpha")]
     tiles += [(mesh, _of(image, output, 1.8, extension="EXTEND")) for output in ("Color", "Alpha")]
     tiles += [(mesh, _of(image, "Color", 1.8, projection=kind)) for kind in ("BOX", "SPHERE", "TUBE")]
     tiles += [(mesh, _of(image, "Color", 1.8, extension="CLIP", projection=kind)) for kind in ("BOX", "SPHERE", "TUBE")]
-    tiles += [(mesh, _of(other, output)) for other in (plain, data, packed) for output in ("Color", "Alpha")]
+    tiles += [(mesh, _of(other, output)) for other in others for output in ("Color", "Alpha")]
     set_board(scene, tiles)
 
 
@@ -113,6 +123,7 @@ _TILED = {
     "unlisted": ((1001, 1012), (1001, 1002, 1011, 1012), ()),
     "first_lost": ((1001, 1002, 1012), (1002, 1012), ()),
     "first_unlisted": ((1002, 1012), (1002, 1012), ()),
+    "first_alone": ((1001,), (1001,), ()),
     "generated": ((1001, 1002, 1011), (), (1001, 1002, 1011)),
     "empty": ((1001, 1002, 1011), (), (1001, 1011)),
 }
@@ -129,14 +140,17 @@ def image_tiles(scene, choice):
     set_board(scene, tiles)
 
 
-_BOXES = ("whole", "first_lost", "first_unlisted")
+_BOXES = ("whole", "first_lost", "first_unlisted", "first_alone")
 
 
-@case(size=size_of(3), bounces=0, until=(5, 2), quick=True)
+@case(size=size_of(8), bounces=0, quick=True)
 def image_tiles_box(scene):
-    """The first tile alone is projected from the sides of a box; since 5.2 each place has its tile, which is not followed."""
+    """Tiles from the sides of a box, of which Cycles shows the first alone."""
     mesh = tile_mesh()
-    set_board(scene, [(mesh, _of(_tiled(*_TILED[name]), "Color", 3.0, projection="BOX")) for name in _BOXES])
+    images = [_tiled(*_TILED[name]) for name in _BOXES]
+    tiles = [(mesh, _of(image, "Color", *_MAP, projection="BOX")) for image in images]
+    tiles += [(mesh, _of(image, "Color", *_MAP, projection="BOX", extension="CLIP")) for image in images]
+    set_board(scene, tiles)
 
 
 def _painted_file(kind):

@@ -9,6 +9,8 @@
 namespace lancer {
 namespace {
 
+constexpr uint32_t kTileOfEachSide = 512; // flag of a box
+
 template <class F> struct Place { F u, v; };
 template <class F> LANCER_LANE Place<F> select(const MaskOf<F> &m, const Place<F> &a, const Place<F> &b) {
   return {select(m, a.u, b.u), select(m, a.v, b.v)};
@@ -114,7 +116,7 @@ template <class F> Value<F> box(const Inputs<F> &in, const Site<F> &site, const 
     const auto shown = share[i] > zero;
     if (!any(shown))
       continue;
-    const Value<F> side = look_up(in, image, places[i]);
+    const Value<F> side = in.node.flags & kTileOfEachSide ? look_up_tile(in, site, places[i]) : look_up(in, image, places[i]);
     const Value<F> more{result.v + share[i] * side.v, result.alpha + share[i] * side.alpha};
     result = select(shown, more, result);
   }

@@ -127,6 +127,7 @@ uint32_t flags_of(uint32_t kind) {
   case LANCER_NODE_RAYCAST:
     return 1 | 2 | 4;
   case LANCER_NODE_IMAGE:
+    return 0xff | 256 | 512;
   case LANCER_NODE_ENVIRONMENT:
     return 0xff | 256;
   case LANCER_NODE_NOISE:
