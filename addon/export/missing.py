@@ -10,8 +10,8 @@ from .colorspace import IDENTITY, conversion
 MAGENTA = (1.0, 0.0, 1.0)
 # Before 5.2 Cycles interpolates, clips and decodes the texel as any other.
 HAS_TEXEL = bpy.app.version < (5, 2)
-# Cycles writes 1 as the bits of a half float.
-_BITS = 2.0**-24
+# Cycles writes 1 and 0 as the bits of half floats, and reads exponents of 0 as those of normal numbers.
+_ONE, _ZERO = 2.0**-15 * (1.0 + 2.0**-10), 2.0**-15
 
 
 def is_black(image):
@@ -22,7 +22,7 @@ def is_black(image):
 def missing(image=None, tile=0):
     """Return the texel in place of an image's picture, or of one of its tiles."""
     if image is not None and is_black(image):
-        texel = np.array((((_BITS, 0.0, _BITS, _BITS),),), np.float32)
+        texel = np.array((((_ONE, _ZERO, _ONE, _ONE),),), np.float32)
         return snapshot.Image("missing", texel, transfer=Transfer.LINEAR, alpha=AlphaMode.ASSOCIATED, tile=tile)
     texel = np.array(((MAGENTA,),), np.float32)
     transfer = Transfer.LINEAR if image is None else _transfer(image) or Transfer.LINEAR

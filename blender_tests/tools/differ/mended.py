@@ -25,12 +25,12 @@ def _frame(**fields):
     return Record("frame", "Frame", {"bounces": 0, "size": [48, 32], **fields})
 
 
-def _thing(shape, *nodes, displacement="BUMP", mesh=(), **fields):
-    """An object whose material has these nodes, numbered from 1; the last is the output."""
+def _thing(shape, *nodes, displacement="BUMP", mesh=(), own=(), **fields):
+    """An object whose material has these nodes, numbered from 1; the last is the output. own: fields of the material."""
     mesh = {"shape": shape, "materials": ["@M"], **dict(mesh)}
     place = {"data": "@Mesh", "location": [0.0, 0.0, 1.0], **fields}
     head = [
-        Record("material", "M", {"displacement": displacement}),
+        Record("material", "M", {"displacement": displacement, **dict(own)}),
         Record("mesh", "Mesh", mesh),
         Record("object", "Thing", place),
     ]
@@ -259,5 +259,44 @@ SCENES = {
         Record("mesh", "Floor", {"shape": "plane"}),
         Record("object", "Floor object", {"data": "@Floor", "scale": [5.0] * 3}),
         Record("layer", "Layer", {"world_override": "@Other"}),
+    ],
+    "lost pictures of a wide gamut": [
+        _frame(),
+        Record("image", "Image", {"format": "PNG8", "size": [5, 2], "space": "Display P3", "source": "SEQUENCE", "seed": 52}),
+        Record("world", "World", {}),
+        Record(
+            "node",
+            "World/1",
+            {"tree": "World", **_node("TexImage", image="@Image"), "user": [0, 0, -2, False, True]},
+        ),
+        Record("node", "World/2", {"tree": "World", **_node("OutputWorld", {"Surface": ["@World/1", "Color"]})}),
+    ],
+    "a photometric file without a direction": [
+        _frame(),
+        Record(
+            "photometry", "Lamp", {"type": 3, "across": [0, 90], "down": [-90, 90], "values": [[38, 14], [10, 36]]}
+        ),
+        *_thing(
+            "cube", _node("Mapping"), _node("TexIES", {"Vector": ["@M/1", "Vector"]}, ies="@Lamp"), _shown(["@M/2", "Fac"])
+        ),
+    ],
+    "a thin film whose normal faces away": [
+        _frame(),
+        *_SKY,
+        *_thing(
+            "cube",
+            _node("BsdfPrincipled", {"Thin Film Thickness": 101.784}),
+            _shown(["@M/1", "BSDF"]),
+            mesh={"smooth": "yes"},
+            own={"no_bump_correction": True},
+        ),
+    ],
+    "light below a coat at the end of a path": [
+        _frame(bounces=0),
+        *_thing(
+            "ball",
+            _node("BsdfPrincipled", {"Transmission Weight": 1.0, "Coat Weight": 1.0, "Emission Strength": 0.2}),
+            _shown(["@M/1", "BSDF"]),
+        ),
     ],
 }  # fmt: skip

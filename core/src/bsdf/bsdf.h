@@ -76,6 +76,8 @@ template <class F> struct Bsdf {
   // A smooth sheet scatters rays of the camera; other rays pass it straight: their share is no lobe.
   B seen_by_camera = uniform<F>(true);
   V straight{F(0.0f)};
+  // Paths that only ask for the emission; as in Cycles, no layer above dims it then.
+  B ends = uniform<F>(false);
   // Walks below the surface: whether the integrator sends any; paths that a diffuse lobe has scattered before; and the width of
   // a pixel there, in the user's units.
   bool walks = false;

@@ -220,7 +220,7 @@ void add_described(const Material *const *materials, size_t number, const Values
 // The paths whose hits ask for lobes: the members of the same names of Bsdf. leaving: all of them come from below the surface;
 // dimmed: those whose exit Fresnel's weight dims.
 template <class F> struct AskingPaths {
-  MaskOf<F> seen_by_camera = uniform<F>(true), after_diffuse = uniform<F>(false);
+  MaskOf<F> seen_by_camera = uniform<F>(true), ends = uniform<F>(false), after_diffuse = uniform<F>(false);
   bool walks = false, leaving = false;
   MaskOf<F> dimmed = uniform<F>(false);
   F pixel{0.0f};
@@ -242,6 +242,7 @@ LANCER_LANE void find_lobes(const Material *const *materials, const Values &valu
     ns = unit_or(Vec3<F>(values(material.normal)), ns);
   bsdf.begin(wo, ns, ng, inside, !(material.flags & MaterialFlag::NoBumpCorrection));
   bsdf.seen_by_camera = paths.seen_by_camera;
+  bsdf.ends = paths.ends;
   bsdf.walks = paths.walks;
   bsdf.after_diffuse = paths.after_diffuse;
   bsdf.pixel = paths.pixel;

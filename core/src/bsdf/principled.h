@@ -166,7 +166,7 @@ void add_layers(Bsdf<F> &bsdf, const LobeInputs<F> &inputs, const PrincipledInpu
   const V none(F(0.0f));
   const V n = normal_or_shading(bsdf, inputs.normal), n_reflect = reflecting_normal(bsdf, inputs.normal);
   const V n_coat = normal_or_shading(bsdf, in.coat_normal);
-  V weight = inputs.weight;
+  V weight = inputs.weight, tinted = inputs.weight;
   // Metal, glass and plastic share a normal and a roughness, along a tangent if anisotropic.
   const MaskOf<F> stretched = base_grain(inputs, in).stretched;
   const V tangent = any(stretched) ? select(stretched, turn_about(inputs.tangent, n, in.anisotropic_rotation), none) : none;
@@ -187,7 +187,7 @@ void add_layers(Bsdf<F> &bsdf, const LobeInputs<F> &inputs, const PrincipledInpu
     Lobe<F> lobe;
     switch (row.layer) {
     case PrincipledLayer::Emission:
-      bsdf.emission += in.emission * weight;
+      bsdf.emission += in.emission * select(bsdf.ends, tinted, weight);
       continue;
     case PrincipledLayer::Sheen: {
       // Cloth on top, with a normal between those of base and coat.
@@ -242,10 +242,10 @@ void add_layers(Bsdf<F> &bsdf, const LobeInputs<F> &inputs, const PrincipledInpu
         if (!any(there))
           continue;
       }
-      const F cos_o = cos_in(bsdf, frame);
+      const F cos_o = bsdf.wo_local[frame].z;
       V color = weighted(row.layer == PrincipledLayer::Gloss ? weight : share * weight);
       if (row.layer == PrincipledLayer::Glass && any(in_sheet)) {
-        add_glass_sheet(bsdf, sheet_facets(in, frame), select(in_sheet, color, none), in, cos_o);
+        add_glass_sheet(bsdf, sheet_facets(in, frame), select(in_sheet, color, none), in, cos_in(bsdf, frame));
         color = select(in_sheet, none, color);
       }
       lobe = plans.has(row.layer) ? plans.seen(row.layer, cos_o, color)
@@ -260,9 +260,12 @@ void add_layers(Bsdf<F> &bsdf, const LobeInputs<F> &inputs, const PrincipledInpu
     else if (row.leaves == Leaves::Unshared)
       weight = select(there, weight * (1.0f - share), weight);
     // The coat tints light on its way in and out.
-    if (row.layer == PrincipledLayer::Coat && !all(same(in.coat_tint, V(F(1.0f)))))
-      weight = select(there & !same(in.coat_tint, V(F(1.0f))),
-                      weight * through_coat(positive(in.coat_tint), cos_in(bsdf, frame), lobe.ior, in.coat), weight);
+    const MaskOf<F> tints = there & !same(in.coat_tint, V(F(1.0f)));
+    if (row.layer == PrincipledLayer::Coat && any(tints)) {
+      const V coat = through_coat(positive(in.coat_tint), cos_in(bsdf, frame), lobe.ior, in.coat);
+      weight = select(tints, weight * coat, weight);
+      tinted = select(tints, tinted * coat, tinted);
+    }
   }
 }
 

@@ -150,7 +150,7 @@ template <class F> void add_film(const Lobe<F> &lobe, F cos_i, FacetResponse<F> 
   const bool by_table = lobe.rules >= Rules::Blender50;
   const F rise = clamp01(film.thickness / (by_table ? 1.0f : 30.0f)), shown = rise * rise * (3.0f - 2.0f * rise);
   const F given = min(film.ior, F(kDensest)), ior = select(rise < one, one + (given - one) * shown, given);
-  const Polarized<F> top = polarized(cos_i, ior);
+  const Polarized<F> top = polarized(abs(cos_i), ior);
   const F path = 2.0f * ior * film.thickness * top.cos_t;
   F re[3][kFilmCrossings], im[3][kFilmCrossings];
   for (int m = 0; m < kFilmCrossings; ++m) {

@@ -27,8 +27,9 @@ glm::vec3 EmissionAt::operator()(const Surface &surface, const glm::vec3 &wo, co
   const glm::vec3 own = nodes_.value(material->emission);
   if (!material->layered_emission)
     return own;
-  // The layers above the emitting one depend on the direction: build all lobes.
-  find_lobes<float>(&material, PlaceValues{nodes_.values()}, false, wo, surface.ns, surface.ng, bsdf_);
+  // The tint of the layers above the emitting one depends on the direction: build all lobes.
+  find_lobes<float>(&material, PlaceValues{nodes_.values()}, false, wo, surface.ns, surface.ng, bsdf_,
+                    {.ends = true});
   return own + bsdf_.emission;
 }
 

@@ -54,7 +54,8 @@ template <class F> LANCER_LANE F between_four(const F (&at)[4], const F &x) {
   return half * ((cubic * x + square) * x + (c - a)) * x + b;
 }
 
-// Returns the intensity in a direction of the luminaire's space, in which the axis is -z; 0 outside the angles of the file.
+// Returns the intensity in a direction of the luminaire's space, in which the axis is -z; 0 outside the angles of the file, and
+// where the vector has no direction: Cycles divides 0 by 0 there, and shows no light.
 template <class F> static F ies_texture(const IesTable &table, const Vector3<F> &vector) {
   using D = DoubleOf<F>;
   using U = WordOf<F>;
@@ -70,7 +71,8 @@ template <class F> static F ies_texture(const IesTable &table, const Vector3<F> 
       of[column] = gather(table.texels, first + U(column));
     rows[row] = between_four(of, at_v.place);
   }
-  return select(at_v.found & at_h.found, max(between_four(rows, at_h.place), F(0.0f)), F(0.0f));
+  const MaskOf<F> found = at_v.found & at_h.found & !black(vector);
+  return select(found, max(between_four(rows, at_h.place), F(0.0f)), F(0.0f));
 }
 
 } // namespace lancer

@@ -79,6 +79,7 @@ void build(const SurfaceBlock &surfaces, const MaterialBlock &materials, LobeBlo
     find_lobes<F>(materials.material + first, NodeValues{materials, first}, some(materials.holes, first),
                   load3(surfaces.wo, first), load3(surfaces.ns, first), load3(surfaces.ng, first), bsdf,
                   {.seen_by_camera = some(materials.seen_by_camera, first),
+                   .ends = some(materials.ends, first),
                    .after_diffuse = some(materials.after_diffuse, first),
                    .walks = materials.walks,
                    .leaving = materials.leaving,
