@@ -17,7 +17,7 @@ POLYGONS = "polygons:"
 # Requested like an attribute: the rendered colours with their alpha, where a node gives no name.
 RENDER_COLOR = "render color:"
 # Names that Cycles gives to attributes of its own, even if the mesh has others of these names.
-ISLANDS, POINTINESS = "random_per_island", "pointiness"
+ISLANDS, POINTINESS, GENERATED = "random_per_island", "pointiness", "generated"
 _DOMAINS = {"POINT": Domain.VERTEX, "EDGE": Domain.VERTEX, "FACE": Domain.FACE, "CORNER": Domain.CORNER}
 # The attribute types that Cycles reads: the field that holds a value, the type of its numbers, and how many of them are used.
 TYPES = {
@@ -40,7 +40,7 @@ if bpy.app.version >= (4, 1):
 def attribute_name(name):
     """Return the name of a Blender attribute in a snapshot, in which some names are reserved."""
     is_taken = (
-        name in ("generated", ISLANDS, POINTINESS, POLYGONS, RENDER_COLOR)
+        name in (GENERATED, ISLANDS, POINTINESS, POLYGONS, RENDER_COLOR)
         or name.startswith((TANGENT, _NAMED))
         or name.endswith(" ")
     )
@@ -63,7 +63,7 @@ def lacks_tangents(mesh, name):
 def named_attributes(wanted):
     """Return the names in Blender of the wanted attributes of a mesh, without those that Lancer computes."""
     own = (TANGENT, POLYGONS, RENDER_COLOR)
-    return sorted(name_in_blender(name) for name in wanted if name != "generated" and not name.startswith(own))
+    return sorted(name_in_blender(name) for name in wanted if name != GENERATED and not name.startswith(own))
 
 
 def name_in_blender(name):
@@ -78,8 +78,8 @@ def read_attributes(mesh, data, wanted, corners, faces, poll):
     found = []
     for name in sorted(wanted - {POLYGONS}):
         poll()
-        if name == "generated":
-            found.append(_generated(mesh))
+        if name == GENERATED:
+            found.append(generated_coordinates(mesh))
         elif name.startswith(TANGENT):
             found.append(_tangents(mesh, data, name, corners, poll))
         elif name == ISLANDS:
@@ -98,36 +98,43 @@ def _undeformed(mesh):
     return places.reshape(-1, 3)
 
 
-def _generated(mesh):
-    """Return the positions before modifiers, mapped to 0 to 1 over the texture space."""
+def generated_coordinates(mesh, places=None):
+    """Return the positions before modifiers, mapped to 0 to 1 over the texture space. places: those positions, if known."""
     middle, half = np.array(mesh.texspace_location), np.array(mesh.texspace_size)
     half = np.where(half == 0.0, 1.0, half)
-    return MeshAttribute("generated", (_undeformed(mesh) - middle) / (2.0 * half) + 0.5, Domain.VERTEX)
+    places = _undeformed(mesh) if places is None else places
+    return MeshAttribute(GENERATED, (places - middle) / (2.0 * half) + 0.5, Domain.VERTEX)
 
 
 def _tangents(mesh, data, name, corners, poll):
     """Return (x, y, z, sign) of the tangent along u at each corner; None if the mesh lacks the UV map."""
-    layer = _tangents_layer(mesh, name)
+    layer = tangents_layer(mesh, name)
     if layer is not None:
         uvs = _at_corners(read_uv_map(layer), corners).reshape(-1, 3, 2)
-    elif _is_spherical(mesh, name):
-        uvs = _spherical(_undeformed(mesh))[data.triangles]
-        if _JOINS_SEAM:
-            u = uvs[..., 0]
-            u[(np.ptp(u, axis=1, keepdims=True) > 0.5) & (u < 0.5)] += 1.0
+    elif is_without_map(mesh, name):
+        uvs = spherical_map(_undeformed(mesh), data.triangles)
     else:
         return None
     return MeshAttribute(name, corner_tangents(data.positions, data.triangles, data.normals, uvs, poll), Domain.CORNER)
 
 
-def _tangents_layer(mesh, name):
+def tangents_layer(mesh, name):
     uv_map = name_in_blender(name[len(TANGENT) :])
     return mesh.uv_layers.get(uv_map) if uv_map else render_uv_map(mesh)
 
 
-def _is_spherical(mesh, name):
-    """Whether a spherical map replaces the UV map: the name is empty, and the mesh has no UV map."""
+def is_without_map(mesh, name):
+    """Whether a spherical map may replace the UV map: the name is empty, and the mesh has no UV map."""
     return name == TANGENT and len(mesh.uv_layers) == 0
+
+
+def spherical_map(places, triangles):
+    """Return the longitude and latitude of triangles' corners seen from the origin, 0 to 1, (triangles, 3, 2)."""
+    uvs = _spherical(places)[triangles]
+    if _JOINS_SEAM:
+        u = uvs[..., 0]
+        u[(np.ptp(u, axis=1, keepdims=True) > 0.5) & (u < 0.5)] += 1.0
+    return uvs
 
 
 def _spherical(places):
@@ -142,14 +149,14 @@ def _spherical(places):
 def attribute_sources(mesh, wanted):
     """Yield the values of the mesh that read_attributes depends on, besides faces, positions and normals; None if missing."""
     for name in sorted(wanted - {POLYGONS}):
-        if name == "generated":
-            yield _generated(mesh).values
+        if name == GENERATED:
+            yield generated_coordinates(mesh).values
         elif name.startswith(TANGENT):
-            layer = _tangents_layer(mesh, name)
+            layer = tangents_layer(mesh, name)
             if layer is not None:
                 yield read_uv_map(layer)
             else:
-                yield _undeformed(mesh) if _is_spherical(mesh, name) else None
+                yield _undeformed(mesh) if is_without_map(mesh, name) else None
         elif name in (ISLANDS, POINTINESS):
             yield edge_ends(mesh)
         else:

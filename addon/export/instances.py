@@ -73,6 +73,7 @@ class Instances:
         self._space = space
         self._shaders = shaders
         self._reader = AttributeReader(depsgraph, sees_all=False)
+        self._divider = divider
         self._objects = Objects(depsgraph, materials, messages, divider, kept, parts)
         self._rows = {}
         self._narrowed = {}
@@ -113,7 +114,7 @@ class Instances:
                 continue
             # Evaluated data lives as long as the depsgraph, but the objects of entries are reused: store addresses only.
             if entry.is_instance:
-                key = thing.original.as_pointer(), thing.data.as_pointer(), self._narrowed_by(entry.parent)
+                key = thing.original.as_pointer(), self._data_key(entry, thing), self._narrowed_by(entry.parent)
                 row = rows.get(key)
                 if row is None:
                     row = rows[key] = self._new_row(thing, entry.instance_object, *key, poll)
@@ -121,7 +122,7 @@ class Instances:
                 # An object that is no instance appears once: no cache is needed.
                 if number % _POLL_EVERY_OBJECT == 0:
                     poll()
-                row = self._new_row(thing, thing, thing.original.as_pointer(), thing.data.as_pointer(), None, poll)
+                row = self._new_row(thing, thing, thing.original.as_pointer(), self._data_key(entry, thing), None, poll)
             if row >= 0:
                 row_of.append(row)
                 entries.append(number)
@@ -178,6 +179,12 @@ class Instances:
         names = [materials.object_attributes(look.slots) for look in self._objects.looks]
         rows = {int(entry): names[look] for entry, look in zip(entries, look_of, strict=True)}
         return read_object_attributes(self.depsgraph, rows, self.messages, _POLL_EVERY, poll)
+
+    def _data_key(self, entry, thing):
+        """Return the address of the mesh that an entry shows; that of the object if it is divided, whose data is not read."""
+        if thing.modifiers and self._divider.shows_own_mesh(entry, thing):
+            return thing.original.as_pointer()
+        return thing.data.as_pointer()
 
     def _narrowed_by(self, instancer):
         if instancer is None:

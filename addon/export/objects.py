@@ -11,6 +11,7 @@ from .attributes import POLYGONS
 from .mesh import export_mesh, read_positions, shown_mesh
 from .mesh_differences import differences, lost_by_exact_shape
 from .subdivision.divider import PLACES_OTHERWISE, size_in_words
+from .subdivision.modifier import may_make_instances
 from .unsupported import check_object
 from .visibility import object_hidden_from
 
@@ -86,6 +87,7 @@ class Objects:
     def look(self, thing, owner, original_key, data_key, narrowed, poll):
         """Return (number of the look, name) of an object with a mesh; (-1, "") if nothing of it is visible.
 
+        original_key: the address of the original; data_key: that of the mesh, or of the original if a Divider shows its mesh.
         owner: the evaluated object itself, or the one of which thing is an instance. Read settings of add-ons from owner:
         reading them from a temporary instance allocates memory that Blender never frees.
         """
@@ -97,12 +99,15 @@ class Objects:
             check_object(owner, self.scene, self.messages)
         sight = self.sight(thing, narrowed)
         materials = _slot_materials(thing)
-        slots = tuple([self.materials.number(material, name) for material in materials or list(thing.data.materials) or [None]])
+        is_divided = data_key == original_key
+        # Without slots only nodes give materials to the mesh.
+        of_mesh = () if materials or is_divided and not may_make_instances(owner) else list(thing.data.materials)
+        slots = tuple([self.materials.number(material, name) for material in materials or of_mesh or [None]])
         own = owner.lancer
         kind = InstanceKind[own.shape]
         mesh, placement = 0, -1
         if kind == InstanceKind.MESH:
-            mesh, used = self._mesh(thing, owner, name, data_key, slots, self._colors_polygons(own), poll)
+            mesh, used = self._mesh(thing, owner, name, data_key, is_divided, slots, self._colors_polygons(own), poll)
             if mesh < 0:
                 return -1, ""
             self._tell_mesh(name, slots, mesh)
@@ -124,7 +129,7 @@ class Objects:
         """Whether Classic shades each face with one colour, which requires the polygon of each triangle."""
         return own.shading == "FLAT" and self.scene.lancer.integrator == "CLASSIC"
 
-    def _mesh(self, thing, owner, name, data_key, slots, polygons, poll):
+    def _mesh(self, thing, owner, name, data_key, is_divided, slots, polygons, poll):
         """Return the number of the object's mesh, -1 without faces, and the slots that its faces use.
 
         Objects that share a mesh may have materials that read different attributes: the mesh is read again if one is missing.
@@ -137,7 +142,7 @@ class Objects:
         copies = self._meshes.setdefault(data_key, [])
         found = next((copy for copy in copies if copy[0] >= wanted), None)
         if found is None:
-            data = self._read_mesh(thing, owner, name, data_key, wanted, poll)
+            data = self._read_mesh(thing, owner, name, data_key, is_divided, wanted, poll)
             poll()
             used = (0,) if data.material_slots is None else tuple(np.unique(data.material_slots).tolist())
             number = -1
@@ -152,23 +157,29 @@ class Objects:
             self.messages.add(f"object '{name}': has no faces, it is left out")
         return number, used
 
-    def _read_mesh(self, thing, owner, name, data_key, wanted, poll):
-        settings = self._divider.settings(thing, owner)
+    def _read_mesh(self, thing, owner, name, data_key, is_divided, wanted, poll):
+        settings = self._divider.settings(owner)
         if settings is not None:
-            return self._divided_mesh(thing, owner, name, (data_key, self._divider.key(settings)), settings, wanted, poll)
+            key = data_key, self._divider.key(settings)
+            return self._divided_mesh(thing, owner, None if is_divided else thing.data, name, key, settings, wanted, poll)
 
         def read():
             original = thing.original.data
             with shown_mesh(thing, owner) as mesh:
                 return self._export_mesh(mesh, name if original is None else original.name, poll, wanted)
 
-        return read() if self._parts is None else self._parts.mesh(thing, owner, data_key, wanted, read)
+        return read() if self._parts is None else self._parts.mesh(thing, owner, thing.data, data_key, wanted, read)
 
-    def _divided_mesh(self, thing, owner, name, data_key, settings, wanted, poll):
+    def _divided_mesh(self, thing, owner, made, name, key, settings, wanted, poll):
+        """made: the mesh of an instance that the object's nodes made; None for the object's own, whose data is not read."""
+
         def read():
-            return self._divider.mesh(owner, settings, name, wanted, poll)
+            return self._divider.mesh(owner, made, settings, name, wanted, poll)
 
-        mesh = read() if self._parts is None else self._parts.mesh(thing, owner, data_key, wanted, read)
+        if self._parts is None:
+            mesh = read()
+        else:
+            mesh = self._parts.mesh(thing, owner, owner.original.data if made is None else made, key, wanted, read)
         self.messages.add(f"object '{name}': {size_in_words(mesh)}", severity=Severity.HINT)
         if PLACES_OTHERWISE:
             text = "Cycles of this version cuts the faces elsewhere, which coarse displacement shows; a low dicing rate helps"

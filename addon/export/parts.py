@@ -76,9 +76,8 @@ class Parts:
             self.images.forget(pictures, self.shaders.numbers())
         return forgotten or before != len(self._meshes)
 
-    def mesh(self, thing, owner, data_key, wanted, read):
-        """Return the mesh of an evaluated object, from read() if it is not cached."""
-        data = thing.data
+    def mesh(self, thing, owner, data, data_key, wanted, read):
+        """Return the mesh of an evaluated object, from read() if it is not cached. data: the mesh that it is made of."""
         size = len(data.vertices), len(data.loops), len(data.polygons)
         original = thing.original.data
         key = data_key, identity(original) if original is not None else None, wanted

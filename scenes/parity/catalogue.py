@@ -45,6 +45,7 @@ SUBJECTS = (
     "cameras",
     "objects",
     "subdivisions",
+    "subdivisions_inputs",
     "films",
     "passes_light",
     "passes_data",

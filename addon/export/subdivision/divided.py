@@ -9,7 +9,20 @@ from ...bindings.abi import LancerError
 from ...bindings.enums import Domain
 from ...bindings.snapshot import MeshAttribute, MeshData
 from ..arrays import built_in, read
-from ..attributes import POLYGONS, RENDER_COLOR, TANGENT, name_in_blender, read_attributes, read_uv_map, render_uv_map
+from ..attributes import (
+    GENERATED,
+    POLYGONS,
+    RENDER_COLOR,
+    TANGENT,
+    generated_coordinates,
+    is_without_map,
+    name_in_blender,
+    read_attributes,
+    read_uv_map,
+    render_uv_map,
+    spherical_map,
+    tangents_layer,
+)
 from ..mesh import face_slots, read_positions
 from ..tangents import corner_tangents
 from .cage import read_cage, uv_cage
@@ -22,21 +35,24 @@ from .tessellation import tessellate
 
 # Before 4.5 each face has vertices of its own in Cycles, and its own normals at a crease.
 _KEEPS_SIDES = bpy.app.version < (4, 5)
+# Since 4.5 the tangents of a divided mesh without a UV map follow a spherical map; before, they are along x.
+_HAS_SPHERICAL = bpy.app.version >= (4, 5)
 
 
-def export_divided(mesh, name, poll, wanted, adaptive, camera, matrix):
+def export_divided(mesh, name, poll, wanted, adaptive, camera, matrix, undeformed=None):
     """Return the MeshData of a mesh divided as its settings ask.
 
     name: of the object. wanted: as for export_mesh(). camera: the snapshot.Camera by whose pixels the mesh is divided.
-    matrix: from the object to the world. Raise LancerError if the triangles would not fit into memory.
+    matrix: from the object to the world. undeformed: the positions before modifiers, if the mesh lacks them. Raise LancerError
+    if the triangles would not fit into memory.
     """
-    return _Divided(mesh, name, poll, wanted, adaptive, camera, matrix).export()
+    return _Divided(mesh, name, poll, wanted, adaptive, camera, matrix, undeformed).export()
 
 
 class _Divided:
-    def __init__(self, mesh, name, poll, wanted, adaptive, camera, matrix):
+    def __init__(self, mesh, name, poll, wanted, adaptive, camera, matrix, undeformed=None):
         self._mesh, self._name, self._poll, self._wanted, self._adaptive = mesh, name, poll, wanted, adaptive
-        self._positions = read_positions(mesh)
+        self._positions, self._undeformed = read_positions(mesh), undeformed
         if adaptive.in_pixels:
             size = pixel_size(camera, adaptive.offscreen_scale)
             self._rate = Rate(adaptive.rate, adaptive.most_levels, np.asarray(matrix, float), size)
@@ -127,25 +143,34 @@ class _Divided:
         mesh, cage, poll = self._mesh, self._cage, self._poll
         # One point for each face stands for its triangles: attributes of faces are the same on all of them.
         first = MeshData(positions=self._positions, triangles=cage.corners[cage.starts[:-1], None].repeat(3, axis=1))
-        plain = {name for name in self._wanted if not name.startswith(TANGENT)} | {RENDER_COLOR}
+        tangents = {name for name in self._wanted if name.startswith(TANGENT)}
+        plain = (self._wanted - tangents - {GENERATED}) | {RENDER_COLOR}
         corners = np.arange(len(cage.corners))
         found = read_attributes(mesh, first, plain, corners, np.arange(len(cage.starts) - 1), poll)
+        if GENERATED in self._wanted:
+            found = (*found, generated_coordinates(mesh, self._undeformed))
         attributes = [self._divided(attribute, faces) for attribute in found]
         for attribute in attributes:
             if attribute.name == RENDER_COLOR:
                 data = replace(data, colors=_of_corners(attribute, data)[..., :3])
         attributes = [attribute for attribute in attributes if attribute.name in self._wanted]
-        for name in sorted(self._wanted - plain):
-            uvs = self._tangent_uvs(name)
+        for name in sorted(tangents):
+            uvs = self._tangent_uvs(name, data)
             if uvs is not None:
-                tangents = corner_tangents(data.positions, data.triangles, data.normals, uvs, poll)
-                attributes.append(MeshAttribute(name, tangents, Domain.CORNER))
+                values = corner_tangents(data.positions, data.triangles, data.normals, uvs, poll)
+                attributes.append(MeshAttribute(name, values, Domain.CORNER))
         return replace(data, attributes=tuple(sorted(attributes, key=lambda attribute: attribute.name)))
 
-    def _tangent_uvs(self, name):
-        uv_map = name_in_blender(name[len(TANGENT) :])
-        layer = self._mesh.uv_layers.get(uv_map) if uv_map else render_uv_map(self._mesh)
-        return None if layer is None else self._uvs(read_uv_map(layer))
+    def _tangent_uvs(self, name, data):
+        """Return (triangles, 3, 2), the map along which tangents run; None if Cycles has none."""
+        layer = tangents_layer(self._mesh, name)
+        if layer is not None:
+            return self._uvs(read_uv_map(layer))
+        if not is_without_map(self._mesh, name):
+            return None
+        if _HAS_SPHERICAL:
+            return spherical_map(data.positions, data.triangles)
+        return np.zeros((*data.triangles.shape, 2), np.float32)
 
     def _divided(self, attribute, faces):
         """Return an attribute of the cage on the triangles."""
@@ -157,7 +182,7 @@ class _Divided:
             is_uv_map = self._mesh.uv_layers.get(name_in_blender(name)) is not None
             at = self._uvs(values) if is_uv_map else self._at_corners(LinearPatches(values, cage))
             return MeshAttribute(name, at.reshape(-1, values.shape[1]), domain)
-        if name == "generated" and self._adaptive.smooth:
+        if name == GENERATED and self._adaptive.smooth:
             patches = LimitPatches(replace(cage, values=values.astype(float)), poll)
         else:
             patches = LinearPatches(values[cage.corners], cage)

@@ -5,8 +5,17 @@ from typing import NamedTuple
 
 import bpy
 
+from ..mesh import read_positions
+
 # Since 4.5 Cycles divides the mesh before the modifier; until then, the mesh that the modifier has divided already.
 _DIVIDES_CAGE = bpy.app.version >= (4, 5)
+# The modifiers that move the vertices of a mesh without a change of its faces; Blender's coordinates before deformation ignore
+# them.
+_DEFORMING = {
+    "ARMATURE", "CAST", "CLOTH", "CORRECTIVE_SMOOTH", "CURVE", "DISPLACE", "HOOK", "LAPLACIANDEFORM", "LAPLACIANSMOOTH",
+    "LATTICE", "MESH_CACHE", "MESH_DEFORM", "SHRINKWRAP", "SIMPLE_DEFORM", "SMOOTH", "SOFT_BODY", "SURFACE_DEFORM", "WARP",
+    "WAVE",
+}  # fmt: skip
 
 
 class Adaptive(NamedTuple):
@@ -52,6 +61,11 @@ def adaptive(thing, scene, in_view):
     )
 
 
+def may_make_instances(thing):
+    """Whether an object's modifiers may make instances of meshes that are not its own."""
+    return any(modifier.type == "NODES" for modifier in thing.modifiers)
+
+
 @contextlib.contextmanager
 def cage_of(owner, depsgraph):
     """Yield the mesh of an evaluated object that Cycles divides.
@@ -62,11 +76,43 @@ def cage_of(owner, depsgraph):
     if not _DIVIDES_CAGE:
         yield owner.data
         return
+    with _evaluated_without(owner, depsgraph, {len(owner.modifiers) - 1}) as mesh:
+        yield mesh
+
+
+def undeformed_cage(owner, depsgraph):
+    """Return the positions of the mesh of cage_of() without deformation, (vertices, 3); None if nothing deforms it.
+
+    A mesh that Blender evaluates again has no layer of them.
+    """
+    if not _DIVIDES_CAGE:
+        return None
+    modifiers = owner.modifiers
+    deforming = {number for number, modifier in enumerate(modifiers) if modifier.type in _DEFORMING}
+    keys = owner.original.data.shape_keys
+    if not deforming and keys is None:
+        return None
+    blocks = () if keys is None else keys.evaluated_get(depsgraph).key_blocks
+    muted = [False] * len(blocks)
+    if blocks:
+        blocks.foreach_get("mute", muted)
+        blocks.foreach_set("mute", [True] * len(blocks))
+    try:
+        with _evaluated_without(owner, depsgraph, {len(modifiers) - 1} | deforming) as mesh:
+            return read_positions(mesh)
+    finally:
+        if blocks:
+            blocks.foreach_set("mute", muted)
+
+
+@contextlib.contextmanager
+def _evaluated_without(owner, depsgraph, numbers):
+    """Yield the mesh of an evaluated object as it is without the modifiers of those numbers."""
     switch = "show_render" if depsgraph.mode == "RENDER" else "show_viewport"
     before = [False] * len(owner.modifiers)
     owner.modifiers.foreach_get(switch, before)
     try:
-        _set(owner.modifiers, switch, [*before[:-1], False])
+        _set(owner.modifiers, switch, [is_on and number not in numbers for number, is_on in enumerate(before)])
         mesh = owner.to_mesh(preserve_all_data_layers=True, depsgraph=depsgraph)
         _set(owner.modifiers, switch, before)
         yield mesh

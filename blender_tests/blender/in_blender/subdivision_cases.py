@@ -1,6 +1,7 @@
 """Objects that Cycles divides adaptively, as they are exported, and what the export leaves behind."""
 
 import os
+import resource
 import tempfile
 
 import bpy
@@ -138,6 +139,22 @@ def linked():
     # Twice: the first export must leave the modifier on.
     counts += [_exported()["triangles"] for _ in range(2)]
     return {"counts": counts, "kept": _kept()[2] == before[2]}
+
+
+def undivided():
+    """Return the MB by which the process grows while it exports a grid of which its modifier would make millions of faces."""
+    scene = stage.empty(width=80, height=60)
+    stage.camera((0, 0, 5), (0, 0, 0))
+    side = np.arange(101)
+    places = np.stack([*np.meshgrid(side / 50.0 - 1.0, side / 50.0 - 1.0), np.zeros((101, 101))], axis=-1).reshape(-1, 3)
+    first = (101 * side[:100, None] + side[:100]).reshape(-1)
+    faces = np.stack([first, first + 1, first + 102, first + 101], axis=1)
+    modifier = _adaptive(scene, stage.mesh("Grid", places.tolist(), faces.tolist()), 100.0)
+    modifier.levels = modifier.render_levels = 4 if bpy.app.version >= (4, 5) else 1
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    snapshot, _ = export_told()
+    grown = (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 1024
+    return {"grown": grown, "triangles": len(snapshot.meshes[0].triangles), "version": bpy.app.version[:2]}
 
 
 def creased_border():
