@@ -5,10 +5,11 @@ import pytest
 
 from addon.bindings.enums import CameraKind
 from addon.bindings.snapshot import Camera
-from addon.export.subdivision.catmull_clark import Cage, Edges
+from addon.export.subdivision.catmull_clark import Cage, Edges, refine
 from addon.export.subdivision.edge_table import Rate
+from addon.export.subdivision.limit_patches import LimitPatches
 from addon.export.subdivision.non_manifold import odd_corners
-from addon.export.subdivision.patches import LimitPatches, LinearPatches
+from addon.export.subdivision.patches import LinearPatches
 from addon.export.subdivision.pixel_size import pixel_size
 from addon.export.subdivision.splitting import TooManyTrianglesError, split_patches, triangle_counts
 from addon.export.subdivision.tessellation import tessellate
@@ -87,6 +88,34 @@ def test_the_limit_of_a_cube():
     assert np.sort(np.abs(centres), axis=1) == pytest.approx(np.tile((0.0, 0.0, 68.0 / 81.0), (24, 1)), abs=ROUNDING)
     normals = surface.normals(np.arange(24), np.zeros((24, 2)), nothing)
     assert np.abs(normals - corners / np.linalg.norm(corners, axis=1, keepdims=True)).max() < 1e-3
+
+
+@pytest.mark.parametrize("is_creased", [False, True])
+def test_regular_faces_keep_their_limit_when_refined(is_creased):
+    """A torus of 6 x 7 quads with rough places, whose faces away from a crease are patches as a whole."""
+    rng = np.random.default_rng(5)
+    turns = 2.0 * np.pi * np.stack(np.meshgrid(np.arange(6) / 6, np.arange(7) / 7), axis=-1).reshape(-1, 2)
+    ring = 2.0 + np.cos(turns[:, 0])
+    places = np.stack([ring * np.cos(turns[:, 1]), ring * np.sin(turns[:, 1]), np.sin(turns[:, 0])], axis=1)
+    faces = [
+        (6 * (j % 7) + i % 6 for j, i in ((y, x), (y, x + 1), (y + 1, x + 1), (y + 1, x))) for y in range(7) for x in range(6)
+    ]
+    faces = [tuple(face) for face in faces]
+    creases = [(0, 1)] if is_creased else []
+    mesh = cage(places + rng.normal(0.0, 0.2, places.shape), faces, creases, [np.inf] * len(creases))
+    finer = refine(mesh, turned=False)
+    corners, uvs = everywhere(len(mesh.corners))
+    # The first corner of each quad is the vertex of the corner that makes it.
+    surfaces = LimitPatches(mesh, nothing), LimitPatches(finer, nothing)
+    for name in ("at", "normals"):
+        coarse = getattr(surfaces[0], name)(corners, 0.5 * uvs, nothing)
+        fine = getattr(surfaces[1], name)(4 * corners, uvs, nothing)
+        far = np.repeat([not is_creased or not {0, 1} & set(face) for face in faces], 4 * 25)
+        # Normals are quotients of differences of such numbers.
+        assert np.abs(coarse - fine)[far].max() < 100.0 * ROUNDING
+        if name == "at":
+            # Beside the dart the patches are made after different numbers of refinements.
+            assert np.abs(coarse - fine).max() < 1e-2
 
 
 @pytest.mark.parametrize("sharpness", [0.0, 0.6, 2.0, np.inf])

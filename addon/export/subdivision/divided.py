@@ -27,8 +27,9 @@ from ..mesh import face_slots, read_positions
 from ..tangents import corner_tangents
 from .cage import read_cage, uv_cage
 from .edge_table import Rate
+from .limit_patches import LimitPatches
 from .memory import BYTES_OF_TRIANGLE, most_triangles
-from .patches import LimitPatches, LinearPatches
+from .patches import LinearPatches
 from .pixel_size import pixel_size
 from .splitting import TooManyTrianglesError, split_patches
 from .tessellation import tessellate
