@@ -5,7 +5,7 @@ import pytest
 
 from addon.bindings.enums import CameraKind
 from addon.bindings.snapshot import Camera
-from addon.export.subdivision.catmull_clark import Cage, Edges, refine
+from addon.export.subdivision.catmull_clark import Cage, refine
 from addon.export.subdivision.edge_table import Rate
 from addon.export.subdivision.limit_patches import LimitPatches
 from addon.export.subdivision.non_manifold import odd_corners
@@ -154,7 +154,7 @@ def test_sharp_vertices_stay():
 
 def stays(mesh):
     """Return the vertices that stay in their places because of how the faces meet there."""
-    return np.flatnonzero(odd_corners(mesh, Edges(mesh, mesh.neighbours()[0]))).tolist()
+    return np.flatnonzero(odd_corners(mesh, mesh.edges)).tolist()
 
 
 def test_edges_of_many_faces_end_in_corners():
@@ -171,7 +171,7 @@ def test_edges_of_many_faces_end_in_corners():
 
 def test_faces_that_run_the_same_way_are_sharp():
     mesh = cage([(0, -1, 0), (0, 0, 0), (0, 1, 0), (1, 0, 0), (1, 1, 0), (-1, 0, 1), (-1, 1, 1)], [(1, 3, 4, 2), (1, 5, 6, 2)])
-    edges = Edges(mesh, mesh.neighbours()[0])
+    edges = mesh.edges
     assert edges.ends[(edges.faces == 2) & np.isinf(edges.sharpness)].tolist() == [[1, 2]] and stays(mesh) == [1, 2]
     assert stays(cage(mesh.values, [(1, 3, 4, 2), (2, 6, 5, 1)])) == []
 

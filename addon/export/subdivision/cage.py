@@ -5,7 +5,7 @@ import numpy as np
 
 from ..arrays import built_in, corner_vertices, read
 from ..edges import edge_ends
-from .catmull_clark import ENDLESS, Cage, Edges
+from .catmull_clark import ENDLESS, Cage
 from .non_manifold import odd_corners
 
 # Since 4.5 Cycles refines the cage three times; what is sharper than that counts as smooth from there, but for full creases.
@@ -51,8 +51,7 @@ def _with_sharp_vertices(cage, adaptive):
 
     Those are the corners of boundaries, where wanted, and those of faces that form no single sheet.
     """
-    edges = Edges(cage, cage.neighbours()[0])
-    count = len(cage.values)
+    edges, count = cage.edges, len(cage.values)
     ends = edges.ends.reshape(-1)
     two = np.bincount(ends, minlength=count) == 2
     both = np.full(count, np.inf)
@@ -66,7 +65,7 @@ def _with_sharp_vertices(cage, adaptive):
 
 def _levels(cage, rate):
     """Return the refinements after which the longest edge is about as long as the rate."""
-    ends = Edges(cage, cage.neighbours()[0]).ends
+    ends = cage.edges.ends
     start, end = (rate.points(cage.values[ends[:, side]]) for side in (0, 1))
     longest = rate.lengths(start, end)[1].max(initial=1.0)
     return min(int(np.log2(longest) + 1.0), _MOST_LEVELS)
@@ -79,23 +78,21 @@ def _limited(sharpness, levels):
 
 def uv_cage(cage, uvs, rule):
     """Return the cage of a UV map, whose vertices are split where it has a seam. uvs: (corners, 2); rule: its uv_smooth."""
-    keys = np.empty((len(uvs), 3))
-    keys[:, 0], keys[:, 1:] = cage.corners, uvs
-    # Equal rows have equal numbers; adding 0 turns -0 into 0.
-    found, first, corners = np.unique(keys + 0.0, axis=0, return_index=True, return_inverse=True)
-    corners = corners.reshape(-1)
+    # Equal places have equal bits; adding 0 turns -0 into 0.
+    bits = (np.ascontiguousarray(uvs, np.float32) + np.float32(0.0)).view(np.uint64).reshape(-1)
+    places, numbers = np.unique(bits, return_inverse=True)
+    _, first, corners = np.unique(cage.corners * len(places) + numbers, return_index=True, return_inverse=True)
     vertex = cage.corners[first]
     after = cage.neighbours()[0]
-    edges = Edges(cage, after)
+    edges = cage.edges
     sharp = np.flatnonzero(edges.sharpness[edges.of_corner] > 0.0)
     creases = np.stack([corners[sharp], corners[after[sharp]]], axis=1)
-    split = Cage(
-        found[:, 1:], corners, cage.starts, creases, edges.sharpness[edges.of_corner[sharp]], cage.vertex_sharpness[vertex]
-    )
+    sharpness = edges.sharpness[edges.of_corner[sharp]]
+    split = Cage(uvs[first].astype(float), corners, cage.starts, creases, sharpness, cage.vertex_sharpness[vertex])
     sharpness = split.vertex_sharpness.copy()
-    own = Edges(split, after)
-    on_border = _at(own.ends[own.faces != 2], len(found))
-    alone = np.bincount(corners, minlength=len(found)) == 1
+    own = split.edges
+    on_border = _at(own.ends[own.faces != 2], len(first))
+    alone = np.bincount(corners, minlength=len(first)) == 1
     values = np.bincount(vertex, minlength=len(cage.values))[vertex]
     if rule == "PRESERVE_BOUNDARIES":
         sharpness[on_border] = np.inf

@@ -3,6 +3,7 @@
 The rules of semi-sharp creases are those of DeRose, Kass and Truong (1998), as OpenSubdiv applies them.
 """
 
+import functools
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,6 +25,10 @@ class Cage:
     creases: np.ndarray  # (n, 2)
     crease_sharpness: np.ndarray  # (n,)
     vertex_sharpness: np.ndarray  # (vertices,)
+
+    @functools.cached_property
+    def edges(self):
+        return Edges(self, self.neighbours()[0])
 
     def neighbours(self):
         """Return the corners after and before each corner in its face, and the face of each corner."""
@@ -93,8 +98,8 @@ def refine(cage, turned):
 
     turned: instead put the vertex of corner c of a quad at place c, so that all four have the quad's own directions.
     """
-    after, before, faces = cage.neighbours()
-    edges = Edges(cage, after)
+    _, before, faces = cage.neighbours()
+    edges = cage.edges
     values, vertices = cage.values, len(cage.values)
     sizes = np.maximum(np.diff(cage.starts), 1)[:, None]
     centres = sums(faces, values[cage.corners], len(sizes)) / sizes

@@ -33,20 +33,36 @@ class Rate:
         return lengths, np.nan_to_num(wanted, nan=0.0, posinf=0.0)
 
 
+# The columns of the table. Numbers of edges and vertices are below 2^31, or there is no memory for them.
+_COLUMNS = {
+    "ends": (np.int32, (2,)),
+    "segments": (np.int32, ()),
+    "inner": (np.int32, ()),  # the first vertex after the start; the others follow
+    "length": (np.float64, ()),
+    "depth": (np.int32, ()),
+    "middle": (np.int32, ()),  # the vertex between the halves; -1 for none
+    "halves": (np.int32, (2,)),
+    "patch": (np.int32, ()),
+    "uvs": (np.float64, (2, 2)),
+}
+
+
 class EdgeTable:
     """All edges: their ends, their number of segments, their vertices between the ends, and their halves."""
 
     def __init__(self, surface, rate, poll):
         self._surface, self._rate, self._poll = surface, rate, poll
         self.vertices = 0
-        self.ends = np.zeros((0, 2), np.int64)
-        self.segments = np.zeros(0, np.int64)
-        self.inner = np.zeros(0, np.int64)  # the first vertex after the start; the others follow
-        self.length = np.zeros(0)
-        self.depth = np.zeros(0, np.int64)
-        self.middle = np.full(0, -1)  # the vertex between the halves
-        self.halves = np.full((0, 2), -1)
-        self._patch, self._uvs = np.zeros(0, np.int64), np.zeros((0, 2, 2))
+        self._count = 0
+        self._columns = {name: np.empty((0, *shape), dtype) for name, (dtype, shape) in _COLUMNS.items()}
+        self._show()
+
+    def _show(self):
+        """Give each column the rows that are in use."""
+        used = {name: column[: self._count] for name, column in self._columns.items()}
+        self.ends, self.segments, self.length, self.depth = (used[name] for name in ("ends", "segments", "length", "depth"))
+        self.inner, self.middle, self.halves = (used[name] for name in ("inner", "middle", "halves"))
+        self._patch, self._uvs = used["patch"], used["uvs"]
 
     def add(self, ends, patch, uvs, depth, **known):
         """Add edges and return their numbers. known: segments, inner and length of edges that need not be measured."""
@@ -58,13 +74,18 @@ class EdgeTable:
             own = np.maximum(segments - 1, 0)
             inner = self.vertices + np.cumsum(own) - own
             self.vertices += int(own.sum())
-        first, count = len(self.ends), len(ends)
-        none = np.full((count, 2), -1)
-        news = (ends, segments, inner, length, depth, none[:, 0], none, patch, uvs)
-        names = ("ends", "segments", "inner", "length", "depth", "middle", "halves", "_patch", "_uvs")
-        for name, new in zip(names, news, strict=True):
-            setattr(self, name, np.concatenate([getattr(self, name), new]))
-        return np.arange(first, first + count)
+        first, self._count = self._count, self._count + len(ends)
+        news = (ends, segments, inner, length, depth, -1, -1, patch, uvs)
+        for name, new in zip(_COLUMNS, news, strict=True):
+            column = self._columns[name]
+            if len(column) < self._count:
+                # Grow by more than is needed, so that few rows are copied often.
+                grown = np.empty((self._count + self._count // 2, *column.shape[1:]), column.dtype)
+                grown[:first] = column[:first]
+                self._columns[name] = column = grown
+            column[first : self._count] = new
+        self._show()
+        return np.arange(first, self._count)
 
     def measured(self, patch, uvs, depth):
         """Return the segments, or SPLIT, and the lengths of edges, from their ends and their middles."""

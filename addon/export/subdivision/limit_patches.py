@@ -6,7 +6,7 @@ exactly. Near such vertices they are those of Loop and Schaefer (2008), made aft
 
 import numpy as np
 
-from .catmull_clark import Cage, Edges, Joints, refine, sums
+from .catmull_clark import Cage, Joints, refine, sums
 
 # The refinements beyond which no cage is refined, and the number of quads that one may have for the sake of accuracy.
 _MOST_LEVELS = 5
@@ -25,9 +25,8 @@ class LimitPatches:
     """The patches of a cage: each corner of each face is one, with the coordinates of patches.py."""
 
     def __init__(self, cage, poll):
-        after, _, faces = cage.neighbours()
-        edges = Edges(cage, after)
-        regular = _regular_faces(cage, edges, faces)
+        faces = cage.neighbours()[2]
+        regular = _regular_faces(cage, cage.edges, faces)
         poll()
         of_rest = ~regular[faces]
         part, own = _with_ring(cage, faces, ~regular)
@@ -167,7 +166,7 @@ def _bezier(level, chosen):
     """Return (quads, 16, channels), the control points of the chosen quads of a cage, along u and then along v."""
     values, count = level.values, len(level.values)
     after, before, _ = level.neighbours()
-    edges = Edges(level, after)
+    edges = level.edges
     joints = Joints(edges, level.vertex_sharpness, 0.0)
     smooth = ~(joints.corner | joints.crease)
     corners = level.corners

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .catmull_clark import Edges
 from .edge_table import MOST_SEGMENTS, SPLIT, EdgeTable
 from .patches import FacePatches
 
@@ -76,7 +75,7 @@ class _Splitter:
     def _whole_patches(self, cage):
         """Return the Pieces at the start: quads as a whole, and a piece for each corner of the other faces."""
         after, before, faces = cage.neighbours()
-        edges, corners, here = Edges(cage, after), cage.corners, np.arange(len(cage.corners))
+        edges, corners, here = cage.edges, cage.corners, np.arange(len(cage.corners))
         vertices, count = len(cage.values), len(edges.ends)
         middles, centres = vertices + np.arange(count), vertices + count + np.arange(len(cage.starts) - 1)
         self._table.vertices = vertices + count + len(centres)
