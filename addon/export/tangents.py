@@ -8,39 +8,51 @@ tangent for each run of equal ones; here there is one for each handedness.
 
 import numpy as np
 
+_AT_ONCE = 1 << 15
 _SMALLEST = np.finfo(np.float32).tiny
 
 
 def corner_tangents(positions, triangles, normals, uvs, poll):
-    """Return (3 triangles, 4): x, y, z and handedness, 1 or -1. normals: None (flat), per vertex or per corner."""
-    places = positions[triangles]
+    """Return (3 triangles, 4): x, y, z and handedness, 1 or -1.
+
+    normals: None (flat), per vertex or per corner. uvs: per vertex, (vertices, 2), or per corner, (triangles, 3, 2).
+    """
     if normals is None:
-        flat = _unit(np.cross(places[:, 1] - places[:, 0], places[:, 2] - places[:, 0]))
-        normals = np.repeat(flat[:, None], 3, axis=1)
+        normals = _flat_normals(positions[triangles])
     shared = _shared(positions, triangles, normals, uvs)
-    normals = normals if normals.ndim == 3 else normals[triangles]
-    poll()
-    tangents, area, usable = _along_u(places, uvs)
     poll()
     # Sum the triangles' tangents over shared corners, those of mirrored triangles in a second row.
     count = int(shared.max()) + 1
-    hands = (area <= 0.0).astype(np.intp)
-    rows = 2 * shared + hands[:, None]
-    across = _across(tangents[:, None], normals)
-    poll()
-    across *= np.where(usable[:, None], _angles(places, normals), 0.0)[..., None]
-    poll()
+    rows = 2 * shared
+    across = np.empty((*triangles.shape, 3), np.float32)
+    usable = np.empty(len(triangles), bool)
+    for first in range(0, len(triangles), _AT_ONCE):
+        part = slice(first, first + _AT_ONCE)
+        numbers = triangles[part]
+        places = positions[numbers]
+        of_normals = normals[numbers] if normals.ndim == 2 else normals[part]
+        tangents, area, usable[part] = _along_u(places, uvs[numbers] if uvs.ndim == 2 else uvs[part])
+        rows[part] += (area <= 0.0)[:, None]
+        weights = np.where(usable[part, None], _angles(places, of_normals), 0.0)
+        across[part] = _across(tangents[:, None], of_normals) * weights[..., None]
+        poll()
     sums = np.stack([np.bincount(rows.ravel(), across[..., axis].ravel(), 2 * count) for axis in range(3)], axis=1)
     known = np.zeros(2 * count, bool)
     known[rows[usable]] = True
     poll()
     # A triangle without a tangent uses its neighbours' tangent, or x without such neighbours.
-    other = ~usable[:, None] & ~known[rows]
-    rows = np.where(other, rows ^ 1, rows)
-    result = np.empty((*rows.shape, 4), np.float32)
-    result[..., :3] = np.where(known[rows][..., None], _unit(sums)[rows], (1.0, 0.0, 0.0))
-    result[..., 3] = np.where((rows & 1) | ~known[rows], -1.0, 1.0)
-    return result.reshape(-1, 4)
+    rows ^= (~usable[:, None] & ~known[rows]).astype(rows.dtype)
+    rows = rows.reshape(-1)
+    found = np.where(known[:, None], _unit(sums), (1.0, 0.0, 0.0)).astype(np.float32)
+    result = np.empty((len(rows), 4), np.float32)
+    result[:, :3] = found[rows]
+    result[:, 3] = np.where((rows & 1).astype(bool) | ~known[rows], -1.0, 1.0)
+    return result
+
+
+def _flat_normals(places):
+    flat = _unit(np.cross(places[:, 1] - places[:, 0], places[:, 2] - places[:, 0]))
+    return np.repeat(flat[:, None], 3, axis=1)
 
 
 def _along_u(places, uvs):
@@ -56,6 +68,10 @@ def _along_u(places, uvs):
 def _shared(positions, triangles, normals, uvs):
     """Return (triangles, 3): equal numbers for corners of equal position, normal and texture coordinate."""
     at_vertices = normals.ndim == 2
+    if at_vertices and uvs.ndim == 2:
+        keys = _hashes(np.zeros(len(positions), np.uint64), positions, normals, uvs)
+        return np.unique(keys, return_inverse=True)[1].reshape(-1)[triangles]
+    uvs = uvs[triangles] if uvs.ndim == 2 else uvs
     keys = _hashes(np.zeros(len(positions), np.uint64), positions, *([normals] if at_vertices else []))[triangles]
     keys = _hashes(keys, uvs, *([] if at_vertices else [normals]))
     _, numbers = np.unique(keys, return_inverse=True)

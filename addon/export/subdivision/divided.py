@@ -80,7 +80,7 @@ class _Divided:
             positions=positions,
             triangles=triangles.astype(np.uint32),
             normals=self._normals(surface, at, positions, triangles, faces),
-            uvs=None if uv_map is None else self._uvs(read_uv_map(uv_map)),
+            uvs=None if uv_map is None else self._uvs(read_uv_map(uv_map))[found.triangles],
             material_slots=None if slots is None else np.clip(slots[faces], 0, 0xFFFF).astype(np.uint16),
             polygons=np.unique(faces, return_inverse=True)[1] if POLYGONS in self._wanted else None,
         )
@@ -128,17 +128,16 @@ class _Divided:
         return corners
 
     def _uvs(self, values):
-        """Return (triangles, 3, 2), a UV map as the modifier smooths it. values: of Blender's corners."""
+        """Return (points, 2), a UV map as the modifier smooths it. values: of Blender's corners."""
         rule = self._adaptive.uv_smooth
         if rule == "NONE" or not self._adaptive.smooth:
             patches = LinearPatches(values, self._cage)
         else:
             patches = LimitPatches(uv_cage(self._cage, values, rule), self._poll)
-        return self._at_corners(patches)
+        return self._at_points(patches)
 
-    def _at_corners(self, patches):
-        found = self._found
-        return patches.at(found.patches, found.uvs, self._poll).astype(np.float32)[found.triangles]
+    def _at_points(self, patches):
+        return patches.at(self._found.patches, self._found.uvs, self._poll).astype(np.float32)
 
     def _with_attributes(self, data, faces):
         mesh, cage, poll = self._mesh, self._cage, self._poll
@@ -155,23 +154,25 @@ class _Divided:
             if attribute.name == RENDER_COLOR:
                 data = replace(data, colors=_of_corners(attribute, data)[..., :3])
         attributes = [attribute for attribute in attributes if attribute.name in self._wanted]
-        for name in sorted(tangents):
-            uvs = self._tangent_uvs(name, data)
-            if uvs is not None:
-                values = corner_tangents(data.positions, data.triangles, data.normals, uvs, poll)
-                attributes.append(MeshAttribute(name, values, Domain.CORNER))
+        attributes += [attribute for name in sorted(tangents) for attribute in self._tangents(name, data)]
         return replace(data, attributes=tuple(sorted(attributes, key=lambda attribute: attribute.name)))
 
-    def _tangent_uvs(self, name, data):
-        """Return (triangles, 3, 2), the map along which tangents run; None if Cycles has none."""
-        layer = tangents_layer(self._mesh, name)
+    def _tangents(self, name, data):
+        """Yield the tangents of that name, if Cycles has them."""
+        found, layer = self._found, tangents_layer(self._mesh, name)
         if layer is not None:
-            return self._uvs(read_uv_map(layer))
-        if not is_without_map(self._mesh, name):
-            return None
-        if _HAS_SPHERICAL:
-            return spherical_map(data.positions, data.triangles)
-        return np.zeros((*data.triangles.shape, 2), np.float32)
+            # The points of a vertex that share their place on the map are one vertex to the tangents.
+            positions = data.positions[found.vertices]
+            has_sides = data.normals is None or data.normals.ndim == 3
+            normals = data.normals if has_sides else data.normals[found.vertices]
+            map_and_mesh = positions, found.triangles, normals, self._uvs(read_uv_map(layer))
+        elif is_without_map(self._mesh, name):
+            shape = (*data.triangles.shape, 2)
+            uvs = spherical_map(data.positions, data.triangles) if _HAS_SPHERICAL else np.zeros(shape, np.float32)
+            map_and_mesh = data.positions, data.triangles, data.normals, uvs
+        else:
+            return
+        yield MeshAttribute(name, corner_tangents(*map_and_mesh, self._poll), Domain.CORNER)
 
     def _divided(self, attribute, faces):
         """Return an attribute of the cage on the triangles."""
@@ -181,8 +182,8 @@ class _Divided:
             return MeshAttribute(name, values[faces], domain)
         if domain == Domain.CORNER:
             is_uv_map = self._mesh.uv_layers.get(name_in_blender(name)) is not None
-            at = self._uvs(values) if is_uv_map else self._at_corners(LinearPatches(values, cage))
-            return MeshAttribute(name, at.reshape(-1, values.shape[1]), domain)
+            at = self._uvs(values) if is_uv_map else self._at_points(LinearPatches(values, cage))
+            return MeshAttribute(name, at[found.triangles.reshape(-1)], domain)
         if name == GENERATED and self._adaptive.smooth:
             patches = LimitPatches(replace(cage, values=values.astype(float)), poll)
         else:
