@@ -105,6 +105,24 @@ def subdivided_creases(scene, crease):
     camera(scene, (0, -4.2, 2.2), (0, 0, 0.85), lens=60.0)
 
 
+@variants(values={"soft": 0.15, "full": 1.0})
+def subdivided_sharp_vertices(scene, crease):
+    """The normals of a body, of which some vertices inside the surface are creased."""
+    thing = _gem(scene, _glowing("Normal"), True)
+    thing.rotation_euler = (0.5, -0.2, 0.3)
+    count = len(thing.data.vertices)
+    values = [crease * (index % 2) for index in range(count)]
+    if bpy.app.version >= (4, 0):
+        thing.data.attributes.new("crease_vert", "FLOAT", "POINT").data.foreach_set("value", values)
+    else:
+        with bpy.context.temp_override(object=thing, active_object=thing, mesh=thing.data):
+            bpy.ops.mesh.customdata_crease_vertex_add()
+        thing.data.vertex_creases[0].data.foreach_set("value", values)
+    divide(scene, thing)
+    sky(scene)
+    camera(scene, (0, -4.2, 2.2), (0, 0, 0.85), lens=60.0)
+
+
 def _mapped(scene, name, points, faces, surface):
     """Places smooth faces that fill most of the picture."""
     mesh = parts.mesh_from_points(name, points, faces)

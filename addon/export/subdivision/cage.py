@@ -12,6 +12,8 @@ from .non_manifold import odd_corners
 # Before, it refines by the length of edges in the picture, at most ten times, and full creases are no exception.
 _THREE_LEVELS = bpy.app.version >= (4, 5)
 _LEVELS, _MOST_LEVELS = 3, 10
+# The refinements before patches are made. A sharp vertex is the blunter the fewer there are.
+PATCH_LEVELS = _LEVELS if _THREE_LEVELS else 5
 # Which corners of a UV map stay sharp, by the modifier's choice; LINEAR maps are not smoothed at all.
 _SHARP_CORNERS = {"PRESERVE_CORNERS", "PRESERVE_CORNERS_AND_JUNCTIONS", "PRESERVE_CORNERS_JUNCTIONS_AND_CONCAVE"}
 _SHARP_JUNCTIONS = _SHARP_CORNERS - {"PRESERVE_CORNERS"}

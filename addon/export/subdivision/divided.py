@@ -25,7 +25,7 @@ from ..attributes import (
 )
 from ..mesh import face_slots, read_positions
 from ..tangents import corner_tangents
-from .cage import read_cage, uv_cage
+from .cage import PATCH_LEVELS, read_cage, uv_cage
 from .edge_table import Rate
 from .limit_patches import LimitPatches
 from .memory import BYTES_OF_TRIANGLE, most_triangles
@@ -88,7 +88,7 @@ class _Divided:
 
     def _surface(self):
         if self._adaptive.smooth:
-            return LimitPatches(self._cage, self._poll)
+            return LimitPatches(self._cage, self._poll, PATCH_LEVELS)
         normals = read(self._mesh.vertices, "normal", np.float32, 3)[self._cage.corners]
         return LinearPatches(self._cage.values[self._cage.corners], self._cage, normals)
 
@@ -133,7 +133,7 @@ class _Divided:
         if rule == "NONE" or not self._adaptive.smooth:
             patches = LinearPatches(values, self._cage)
         else:
-            patches = LimitPatches(uv_cage(self._cage, values, rule), self._poll)
+            patches = LimitPatches(uv_cage(self._cage, values, rule), self._poll, PATCH_LEVELS)
         return self._at_points(patches)
 
     def _at_points(self, patches):
@@ -185,7 +185,7 @@ class _Divided:
             at = self._uvs(values) if is_uv_map else self._at_points(LinearPatches(values, cage))
             return MeshAttribute(name, at[found.triangles.reshape(-1)], domain)
         if name == GENERATED and self._adaptive.smooth:
-            patches = LimitPatches(replace(cage, values=values.astype(float)), poll)
+            patches = LimitPatches(replace(cage, values=values.astype(float)), poll, PATCH_LEVELS)
         else:
             patches = LinearPatches(values[cage.corners], cage)
         at = patches.at(found.patches[found.owners], found.uvs[found.owners], poll)

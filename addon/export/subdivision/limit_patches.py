@@ -8,8 +8,7 @@ import numpy as np
 
 from .catmull_clark import Cage, Joints, refine, sums
 
-# The refinements beyond which no cage is refined, and the number of quads that one may have for the sake of accuracy.
-_MOST_LEVELS = 5
+# The number of quads that a refined cage may have for the sake of accuracy.
 _MOST_QUADS = 1 << 16
 _AT_ONCE = 1 << 14
 # The sine of the angle between u and v below which they tell no normal, and the step to a place where they do.
@@ -24,13 +23,14 @@ _OF_CORNER = np.array(((0, 3, 2, 1), (1, 0, 3, 2)))
 class LimitPatches:
     """The patches of a cage: each corner of each face is one, with the coordinates of patches.py."""
 
-    def __init__(self, cage, poll):
+    def __init__(self, cage, poll, levels=5):
+        """levels: the refinements beyond which no cage is refined, at least 1."""
         faces = cage.neighbours()[2]
         regular = _regular_faces(cage, cage.edges, faces)
         poll()
         of_rest = ~regular[faces]
         part, own = _with_ring(cage, faces, ~regular)
-        level, depth = _refined(part, poll)
+        level, depth = _refined(part, levels, poll)
         self._side = 1 << depth
         cells, count = self._side**2, int(regular.sum())
         self._points = np.empty((count + cells * int(of_rest.sum()), 16, cage.values.shape[1]))
@@ -119,11 +119,11 @@ def _with_ring(cage, faces, chosen):
     return part, chosen[faces[corners]]
 
 
-def _refined(cage, poll):
+def _refined(cage, levels, poll):
     """Return the cage after several refinements, and how many there are after the first, which makes quads of corners."""
     level, depth = refine(cage, turned=False), 0
     poll()
-    while depth < _MOST_LEVELS - 1 and len(level.corners) <= _MOST_QUADS:
+    while depth < levels - 1 and len(level.corners) <= _MOST_QUADS:
         level, depth = refine(level, turned=True), depth + 1
         poll()
     return level, depth
@@ -189,8 +189,10 @@ def _bezier(level, chosen):
     on_edges = sums(ends, np.concatenate([inner, inner]), 2 * len(edges.ends))
     on_edges /= np.bincount(ends, minlength=2 * len(edges.ends))[:, None]
     here, there = edges.ends.reshape(-1), edges.ends[:, ::-1].reshape(-1)
-    straight = np.repeat(edges.sharpness > 0.0, 2) & ~smooth[here]
+    # As OpenSubdiv does, keep the edges at a sharp vertex straight.
+    straight = np.repeat(edges.sharpness > 0.0, 2) & ~smooth[here] | joints.corner[here]
     on_edges[straight] = (2.0 * values[here] + values[there])[straight] / 3.0
+    inner = _beside_sharp(level, joints, limits, on_edges, inner, ahead, behind)
     rows = 4 * np.flatnonzero(chosen)
     points = np.empty((len(rows), 16, values.shape[1]))
     # The places of corner, the point towards the next corner, the inner point, and the point towards the corner before.
@@ -201,3 +203,39 @@ def _bezier(level, chosen):
         points[:, middle] = inner[rows + corner]
         points[:, backward] = on_edges[behind[rows + corner]]
     return points
+
+
+def _beside_sharp(level, joints, limits, on_edges, inner, ahead, behind):
+    """Return the inner points, those of quads with a sharp vertex that no sharp edge meets as the means of OpenSubdiv's two.
+
+    OpenSubdiv has a Gregory patch there, which has two inner points at each corner, one for each edge. ahead, behind: the end of
+    the edge at each corner among on_edges.
+    """
+    edges, corners, values = level.edges, level.corners, level.values
+    sharp = joints.corner.copy()
+    sharp[edges.ends[edges.sharpness > 0.0]] = False
+    quads = np.flatnonzero(sharp[corners].reshape(-1, 4).any(axis=1))
+    if len(quads) == 0:
+        return inner
+    rows = (4 * quads[:, None] + np.arange(4)).reshape(-1)
+    after, before, _ = level.neighbours()
+    ends = np.concatenate([ahead, behind])
+    opposite = corners.reshape(-1, 4)[:, [2, 3, 0, 1]].reshape(-1)
+    turned = 2.0 * np.pi / np.maximum(np.bincount(corners, minlength=len(values)), 1)
+    cosines = np.where(sharp, np.cos(turned), 0.0)[:, None]
+    inner, total = inner.copy(), 0.0
+    for end, beside, far in ((ahead, before, after), (behind, after, before)):
+        # The difference of the two faces at the edge.
+        sides = sums(ends, np.concatenate([values[corners[before]], values[corners[after]]]), 2 * len(edges.ends))
+        across = sums(ends, np.concatenate([values[opposite]] * 2), 2 * len(edges.ends))
+        end = end[rows]
+        apart = (2.0 * values[corners[beside[rows]]] - sides[end]) / 9.0 + (2.0 * values[opposite[rows]] - across[end]) / 18.0
+        near, other = cosines[corners[rows]], cosines[corners[far[rows]]]
+        total = (
+            total
+            + apart
+            + (other * limits[corners[rows]] + (3.0 - 2.0 * near - other) * on_edges[end] + 2.0 * near * on_edges[end ^ 1])
+            / 3.0
+        )
+    inner[rows] = 0.5 * total
+    return inner
