@@ -184,6 +184,9 @@ class Objects:
         if PLACES_OTHERWISE:
             text = "Cycles of this version cuts the faces elsewhere, which coarse displacement shows; a low dicing rate helps"
             self.messages.add(f"object '{name}': {text}", "feature:facets of adaptive subdivision", Severity.HINT)
+        elif owner.type != "MESH":
+            text = "Cycles divides the mesh before the modifier adaptively, Lancer that behind it; convert the object to a mesh"
+            self.messages.add(f"object '{name}': {text}", "feature:adaptive subdivision of curves", Severity.HINT)
         return mesh
 
     def _placement(self, thing, owner, name, kind, data_key):

@@ -51,6 +51,13 @@ def test_blender_does_not_divide_what_lancer_divides(which, tmp_path):
     assert got["version"] < [4, 5] or got["grown"] < 100.0 and got["triangles"] == 80000
 
 
+def test_a_letter_is_divided(case):
+    got = case("letter")
+    told = [line for line in got["told"] if "Cycles divides the mesh before the modifier" in line]
+    # Its level makes fewer than 100 triangles. Before 4.5 Cycles divides the same mesh.
+    assert got["triangles"] > 500 and len(told) == (got["version"] >= [4, 5])
+
+
 def test_linked_objects_are_divided_once(case):
     got = case("linked")
     assert got["counts"] == got["counts"][:1] * 3 and got["kept"]

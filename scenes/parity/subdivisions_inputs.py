@@ -75,7 +75,7 @@ def _nodes(scene, source):
     info = tree.nodes.new("GeometryNodeObjectInfo")
     info.inputs["Object"].default_value, info.inputs["As Instance"].default_value = source, True
     copies = next(node for node in tree.nodes if node.bl_idname == "GeometryNodeInstanceOnPoints")
-    copies.inputs["Scale"].default_value = (1.1, 1.2, 1.3)
+    copies.inputs["Scale"].default_value = (0.8, 0.9, 1.0)
     tree.links.new(info.outputs["Geometry"], copies.inputs["Instance"])
 
 
@@ -88,7 +88,14 @@ def _vertices(scene, source):
     source.scale = 3 * [0.9]
 
 
-@variants(values={"particles": _particles, "nodes": _nodes, "vertices": _vertices}, quick=True, since=(4, 5))
+@variants(
+    values={"particles": _particles, "nodes": _nodes, "vertices": _vertices},
+    quick=True,
+    since=(4, 5),
+    limit=(0.01, 0.2),
+    reason="Cycles stitches facets along the shorter diagonals of the surface, Lancer along those of its coordinates; by the "
+    "places of the instances the difference would be 1.1 % in the mean and 30 % in the worst blocks",
+)
 def subdivided_instances_by(scene, make):
     """Instances of a flat body far behind the camera, by whose own place it is divided: the facets are seen."""
 

@@ -49,11 +49,11 @@ class Divider:
         return self._settings[key]
 
     def _read_settings(self, owner):
-        # In Edit Mode the mesh before the modifier is the edited one.
-        if owner.original.data.is_editmode:
-            return None
         found = adaptive(owner, self._depsgraph.scene, self._in_view)
-        if found is not None and found.in_pixels and self._camera is None:
+        # In Edit Mode the mesh before the modifier is the edited one.
+        if found is None or owner.type == "MESH" and owner.original.data.is_editmode:
+            return None
+        if found.in_pixels and self._camera is None:
             self._messages.add(f"object '{owner.name}': adaptive subdivision by pixels needs a camera, Blender's mesh is shown")
             return None
         return found

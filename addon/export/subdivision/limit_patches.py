@@ -208,8 +208,8 @@ def _bezier(level, chosen):
 def _beside_sharp(level, joints, limits, on_edges, inner, ahead, behind):
     """Return the inner points, those of quads with a sharp vertex that no sharp edge meets as the means of OpenSubdiv's two.
 
-    OpenSubdiv has a Gregory patch there, which has two inner points at each corner, one for each edge. ahead, behind: the end of
-    the edge at each corner among on_edges.
+    OpenSubdiv has a Gregory patch there, which has two inner points at each corner, one for each edge. ahead, behind: the end
+    of the edge at each corner among on_edges.
     """
     edges, corners, values = level.edges, level.corners, level.values
     sharp = joints.corner.copy()

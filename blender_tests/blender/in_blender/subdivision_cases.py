@@ -157,6 +157,16 @@ def undivided():
     return {"grown": grown, "triangles": len(snapshot.meshes[0].triangles), "version": bpy.app.version[:2]}
 
 
+def letter():
+    """Return the export of a divided letter, the mesh of which Blender makes."""
+    scene = stage.empty(width=800, height=600)
+    stage.camera((0, 0, 5), (0, 0, 0))
+    curve = bpy.data.curves.new("Letter", "FONT")
+    curve.body = "I"
+    _adaptive(scene, stage.link("Letter", curve), 2.0)
+    return {"version": bpy.app.version[:2], **_exported()}
+
+
 def creased_border():
     """Return how far a square of four creased edges reaches along both x and y, and whether Cycles divides it as it is."""
     scene = stage.empty(width=64, height=64)
