@@ -8,6 +8,8 @@ import numpy as np
 from .edge_table import MOST_SEGMENTS
 from .patches import FacePatches
 
+# The pieces that are made at once.
+_AT_ONCE = 1 << 12
 _SQUARE = np.array(((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)))
 _TRIANGLE = _SQUARE[[0, 1, 3]]
 
@@ -26,45 +28,51 @@ class Tessellation:
 def tessellate(table, quads, triangles, cage, poll):
     """Return the Tessellation of the Pieces of split_patches() of a cage."""
     patches, uvs, vertices, faces = [], [], [], []
-    count = 0
+    count, of_faces = 0, FacePatches(None, cage)
     for pieces in (quads, triangles):
         segments = table.segments[pieces.edges]
         kinds, which = np.unique(segments, axis=0, return_inverse=True)
         order = np.argsort(which.reshape(-1), kind="stable")
         starts = np.searchsorted(which.reshape(-1)[order], np.arange(len(kinds) + 1))
         for kind, first, last in zip(kinds.tolist(), starts, starts[1:], strict=False):
-            poll()
-            group = pieces.take(order[first:last])
             # Patterns of more segments are rare and large: make them anew.
             places, pattern = (_pattern if max(kind) > MOST_SEGMENTS else _kept_pattern)(tuple(kind))
-            own = _vertices(table, group, len(places))
-            points = len(own) * len(places)
-            patches.append(np.repeat(group.patches, len(places)))
-            uvs.append((_shape(places, len(kind)) @ group.uvs).reshape(-1, 2))
-            vertices.append(own.reshape(-1))
-            offsets = count + len(places) * np.arange(len(own))
-            faces.append((offsets[:, None, None] + pattern).reshape(-1, 3))
-            count += points
-    joined = [np.concatenate(part) if part else np.zeros((0, 3), np.int64) for part in (vertices, faces)]
-    numbers = joined[0].reshape(-1)
-    patches = np.concatenate(patches) if patches else np.zeros(0, np.int64)
-    uvs = np.clip(np.concatenate(uvs), 0.0, 1.0) if uvs else np.zeros((0, 2))
-    patches, uvs = FacePatches(None, cage).of_corners(patches, uvs)
+            for start in range(first, last, _AT_ONCE):
+                poll()
+                group = pieces.take(order[start : min(start + _AT_ONCE, last)])
+                own = _vertices(table, group, len(places))
+                at = (_shape(places, len(kind)) @ group.uvs).reshape(-1, 2)
+                at = of_faces.of_corners(np.repeat(group.patches, len(places)), np.clip(at, 0.0, 1.0))
+                patches.append(at[0].astype(np.int32))
+                uvs.append(at[1])
+                vertices.append(own.astype(np.int32).reshape(-1))
+                offsets = count + len(places) * np.arange(len(own))
+                faces.append((offsets[:, None, None] + pattern).astype(np.int32).reshape(-1, 3))
+                count += len(vertices[-1])
+    patches, numbers = _joined(patches, ()), _joined(vertices, ())
+    uvs, corners = _joined(uvs, (2,)), _joined(faces, (3,))
     # As in Cycles, the first face with a vertex decides its normal, which faces beside a crease do not share.
+    owners = np.full(table.vertices, -1, np.int32)
     order = np.argsort(patches, kind="stable")[::-1]
-    owners = np.full(table.vertices, -1)
     owners[numbers[order]] = order
+    del order
     used = owners >= 0
-    renumbered = np.cumsum(used) - 1
-    # The first triangle with a vertex decides by which side of a seam it is displaced: keep the order of faces.
-    triangles = joined[1][np.argsort(patches[joined[1][:, 0]], kind="stable")]
+    renumbered = np.cumsum(used, dtype=np.int32) - 1
     return Tessellation(
         patches=patches,
         uvs=uvs,
         vertices=renumbered[numbers],
         owners=owners[used],
-        triangles=triangles,
+        # The first triangle with a vertex decides by which side of a seam it is displaced: keep the order of faces.
+        triangles=corners[np.argsort(patches[corners[:, 0]], kind="stable")],
     )
+
+
+def _joined(parts, shape):
+    """Return the rows of arrays of 32-bit numbers or coordinates, and empty the list, so that both are never in memory."""
+    joined = np.concatenate(parts) if parts else np.zeros((0, *shape), np.int32)
+    parts.clear()
+    return joined
 
 
 def _shape(places, sides):
