@@ -5,10 +5,11 @@ Generated from core/include/lancer.h by `make bindings`; changes here are lost.
 
 from enum import IntEnum, IntFlag
 
-ABI_VERSION = 12
+ABI_VERSION = 13
 MOST_NODE_RAYS = 128
 MOST_NODES = 4096
 DEEPEST_RECURSION = 16
+NODE_STEADY = 2147483648
 SKY_WIDTH = 512
 
 

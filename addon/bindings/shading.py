@@ -59,6 +59,7 @@ class Image(Record):
     alpha: int = AlphaMode.STRAIGHT
     tile: int = 0  # UDIM number; 0 for an image without tiles
     matrix: tuple = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)  # decoded RGB to the working space, row-major
+    mipmaps: int = 0  # 1: a ray reads the level whose texels are as large as what it sees; Blocks are followed by the others
 
     def __post_init__(self):
         self.vectors(matrix=9)

@@ -74,6 +74,8 @@ class Image(Structure):
         ("layout", c_uint32),
         ("matrix", c_float * 9),
         ("gaps", c_uint32),
+        ("mipmaps", c_uint32),
+        ("reserved", c_uint32),
     ]
 
 

@@ -46,6 +46,11 @@ _MODULES = (
 _READERS = {kind: reader for module in _MODULES for kind, reader in module.READERS.items()}
 _SCALARS = {"VALUE", "INT", "BOOLEAN"}
 _VECTORS = {"VECTOR", "ROTATION"}
+# Types of the nodes whose changes over a pixel Cycles follows to images in its texture cache.
+_CHANGING = {
+    "ATTRIBUTE", "COMBXYZ", "MAPPING", "NEW_GEOMETRY", "SEPXYZ", "TEX_COORD", "TEX_ENVIRONMENT", "TEX_IMAGE", "UVMAP",
+    "VECT_MATH", "VERTEX_COLOR",
+}  # fmt: skip
 _DEEPEST = 150  # depth of recursion in nodes; each node takes several of Python's 1000 nested calls
 _STRIDE = 100  # depth in nodes at which _look_ahead computes and caches a value
 _CONVERTS_ENDS_ONLY = bpy.app.version >= (5, 0)
@@ -233,11 +238,15 @@ class NodeGraph(NodeBuilder):
             return None
         self._active.add(key)
         reader = _READERS.get(site.node.type)
-        with self.made_by(self.title(site)):
+        with self.made_by(self.title(site), self._takes_as_steady(site)):
             value = None if reader is None else reader(self, site, output)
         self._active.discard(key)
         values[key] = value
         return value
+
+    def _takes_as_steady(self, site):
+        """Whether Cycles takes the values of a node as constant over a pixel where it chooses the level of an image."""
+        return getattr(self.images, "texture_cache", None) is not None and site.node.type not in _CHANGING
 
     def _look_ahead(self, site, output):
         """Compute values along chains of nodes that are longer than calls can nest, starting at the far end."""

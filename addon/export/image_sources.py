@@ -11,6 +11,7 @@ from ..messages.severity import Severity
 from .colorspace import loaded, stored
 from .layered_exr import combined_pass, has_layers, shown_by_cycles
 from .missing import HAS_TEXEL, missing
+from .texture_cache import is_cached
 from .texels import mid_grey, read_texels
 from .tiles import is_generated, path_of_tile, regenerated, shows_memory
 
@@ -41,6 +42,15 @@ def read_all(image, seen, tell):
         if not image.has_data or image.is_float or image.alpha_mode == "PREMUL" or image.type == "MULTILAYER":
             return _read_file(image, path, tell)
     return read_memory(image, None, tell)
+
+
+def has_cached_file(cache, image, seen):
+    """Whether Cycles reads an image from a TextureCache: one with a file of its own, or the files of tiles."""
+    if cache is None or image.is_dirty or image.packed_file is not None or image.source not in ("FILE", "SEQUENCE", "TILED"):
+        return False
+    if image.source == "TILED":
+        return not shows_memory(image) and all(is_cached(cache, path_of_tile(image, tile.number)) for tile in image.tiles)
+    return is_cached(cache, seen.path or bpy.path.abspath(image.filepath, library=image.library))
 
 
 def read_memory(image, _, tell):

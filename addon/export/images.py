@@ -11,7 +11,7 @@ from ..host import main_thread
 from ..host.by_scene import identity
 from ..messages.severity import Severity
 from .frames import shown
-from .image_sources import read_all, read_memory
+from .image_sources import has_cached_file, read_all, read_memory
 from .missing import is_black, missing
 from .scratch import Scratch
 
@@ -29,6 +29,7 @@ class Images:
         self.obey = obey
         self.frame = 1  # of the scene
         self.is_preview = False  # whether the images are shown in a preview of a material or a world
+        self.texture_cache = None  # the scene's TextureCache
         self._kept = kept
         self._scratch = Scratch()
         self._ranges = {}
@@ -42,15 +43,16 @@ class Images:
         in_memory: keep the texels in memory, since all of them will be read.
         """
         seen = shown(image, user, self.frame)
-        key = (identity(image), image.colorspace_settings.name, image.alpha_mode, seen)
+        has_mipmaps = not self.is_preview and has_cached_file(self.texture_cache, image, seen)
+        key = (identity(image), image.colorspace_settings.name, image.alpha_mode, seen, has_mipmaps)
         if key not in self._ranges:
             with main_thread.obeying(self.obey):
-                read = self._reader(read_all, in_memory)
+                read = self._reader(read_all, in_memory, has_mipmaps)
                 # Cycles shows unsaved strokes in previews.
                 if self.is_preview and image.source == "FILE" and image.is_dirty:
                     read = self._reader(read_memory, in_memory)
                 elif self._kept is not None:
-                    read = self._kept.pictures(read)
+                    read = self._kept.pictures(read, has_mipmaps)
                 pictures = read(image, seen, tell)
             if not pictures:
                 self._lost.add(key)
@@ -63,14 +65,18 @@ class Images:
             tell(f"image '{image.name}' {text}, {color}", severity=Severity.WRONG)
         return found
 
-    def _reader(self, read, in_memory):
+    def _reader(self, read, in_memory, has_mipmaps=False):
         """Return a function like read(image, seen, tell) that returns a list, with texels beyond the limit in a file."""
+
+        def made(*arguments):
+            return (picture.replaced(mipmaps=1) if has_mipmaps else picture for picture in read(*arguments))
+
         if in_memory:
-            return lambda *arguments: list(read(*arguments))
+            return lambda *arguments: list(made(*arguments))
 
         def stored(image, seen, tell):
             held = sum(known.texels.nbytes for known in self.list if not isinstance(known.texels, Blocks))
-            return self._scratch.stored(read(image, seen, tell), held, tell)
+            return self._scratch.stored(made(image, seen, tell), held, tell)
 
         return stored
 

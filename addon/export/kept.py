@@ -62,7 +62,7 @@ class Kept:
 
         return export
 
-    def pictures(self, read_all):
+    def pictures(self, read_all, has_mipmaps):
         """Return a _read_all of images.py that looks in the cache first and repeats the messages of cached images."""
 
         def read_again(image, seen, tell):
@@ -70,7 +70,7 @@ class Kept:
                 told = []
                 return read_all(image, seen, lambda *given, **named: told.append((given, named))), told
 
-            found, told = self._get("images", image.name_full, _sources_of_image(image, seen), make)
+            found, told = self._get("images", (image.name_full, has_mipmaps), _sources_of_image(image, seen), make)
             for given, named in told:
                 tell(*given, **named)
             return found

@@ -7,7 +7,7 @@ import contextlib
 import math
 
 from ..bindings import snapshot
-from ..bindings.enums import MOST_NODES, MathOperation, MixMode, NodeKind, VectorOperation
+from ..bindings.enums import MOST_NODES, NODE_STEADY, MathOperation, MixMode, NodeKind, VectorOperation
 from ..bindings.shading import NodeRef
 from ..messages.severity import Severity
 from .arithmetic import is_constant, single, triple
@@ -36,6 +36,7 @@ class NodeBuilder:
         self.unknown = unknown
         self.maker = ""  # the name of the user's node that is read
         self.makers = []  # of each node: its maker, the first one of a shared node
+        self.is_steady = False  # whether images with mipmaps take the values of added nodes as constant over a pixel
         self._nodes = []
         self._scopes = [_Scope()]
 
@@ -44,13 +45,13 @@ class NodeBuilder:
         return tuple(self._nodes)
 
     @contextlib.contextmanager
-    def made_by(self, name):
+    def made_by(self, name, is_steady=False):
         """Attribute the nodes that are added meanwhile to the user's node of that name."""
-        outer, self.maker = self.maker, name
+        outer, self.maker, self.is_steady = (self.maker, self.is_steady), name, is_steady
         try:
             yield
         finally:
-            self.maker = outer
+            self.maker, self.is_steady = outer
 
     def emit(self, kind, *inputs, option=0, flags=0, name="", image=0, image_count=0, first=0, matrix=None):
         """Add a node of the core and return its NodeRef.
@@ -71,7 +72,9 @@ class NodeBuilder:
             return passed_on
         numbers = self._scopes[-1].numbers
         # The text of inputs tells 0 and -0 apart.
-        key = (kind, option, flags, name, image, image_count, first, repr(node.inputs), node.matrix)
+        if self.is_steady:
+            node = node.replaced(flags=flags | NODE_STEADY)
+        key = (kind, option, node.flags, name, image, image_count, first, repr(node.inputs), node.matrix)
         if key not in numbers:
             if len(self._nodes) >= MOST_NODES:
                 text = f"has more than {MOST_NODES} nodes, {self.unknown} is used for the rest"

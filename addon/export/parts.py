@@ -33,6 +33,15 @@ class Parts:
         self._frame = None
         self._last = None  # snapshot, Messages and Places of the last export
 
+    def read_by(self, cache):
+        """Read all images again if the scene's TextureCache has changed."""
+        if cache == self.images.texture_cache:
+            return
+        self.images = Images()
+        self.images.texture_cache = cache
+        self.shaders = ShaderCache(self.images)
+        self._last = None
+
     def begin(self, depsgraph, obey):
         """Drop data that has changed since the last export.
 

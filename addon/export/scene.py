@@ -14,6 +14,7 @@ from .materials import Materials
 from .settings import export_settings, world_of
 from .shader_cache import ShaderCache
 from .subdivision.divider import Divider
+from .texture_cache import texture_cache
 from .unsupported import check_passes, check_scene, check_view_layer
 from .world import export_world
 
@@ -55,15 +56,16 @@ def export_scene(depsgraph, options=None, poll=None):
     check_scene(scene, messages, in_view=options.view is not None)
     check_passes(scene, options.passes, messages)
     check_view_layer(scene, view_layer, messages)
-    parts = options.parts
+    parts, cache = options.parts, texture_cache(scene)
     if parts is not None:
+        parts.read_by(cache)
         again = parts.begin(depsgraph, obey)
         if again is not None:
             # The messages of the last export include those of the checks above, which have not changed.
             snapshot, messages = again
             return snapshot.replaced(camera=camera, settings=settings), messages
     images = Images(obey, options.kept) if parts is None else parts.images
-    images.frame, images.is_preview = scene.frame_current, options.is_preview
+    images.frame, images.is_preview, images.texture_cache = scene.frame_current, options.is_preview, cache
     shaders = ShaderCache(images) if parts is None else parts.shaders
     materials = Materials(messages, override, images, depsgraph, shaders)
     in_view = options.view is not None

@@ -13,6 +13,7 @@ import numpy as np
 from ..bindings.blocks import Blocks, even_sample, in_blocks
 from ..bindings.enums import AlphaMode
 from ..bindings.mapped_file import MappedFile
+from ..bindings.mipmaps import smaller_levels
 from ..host.machine_memory import machine_memory
 from ..messages.severity import Severity
 
@@ -64,6 +65,9 @@ class Scratch:
             if texels.dtype == np.float32:
                 gaps += int((~np.isfinite(blocks).all(axis=-1)).sum())
             file.write(_associated(blocks) if is_straight else blocks)
+        for level in smaller_levels(picture) if picture.mipmaps else ():
+            for blocks in in_blocks(level):
+                file.write(blocks)
         file.write(_SPARE)
         sample = even_sample(texels)
         sample = _associated(sample) if is_straight else sample.copy()

@@ -32,7 +32,7 @@ extern "C" {
 #endif
 
 /* Incremented with each change of a struct or a call of this header. */
-#define LANCER_ABI_VERSION 12u
+#define LANCER_ABI_VERSION 13u
 
 /* Limits: nodes of a material or world; recursion of CLASSIC, in which glass doubles the rays with every depth. */
 #define LANCER_MOST_NODE_RAYS 128u /* of an OCCLUSION or a BEVEL */
@@ -212,7 +212,16 @@ typedef struct lancer_image {
   uint32_t layout;   /* LANCER_LAYOUT_* */
   float matrix[9];   /* row-major: decoded RGB to the scene's working space */
   uint32_t gaps;     /* BLOCKS: number of texels that are not finite; the library counts those of ROWS */
+  uint32_t mipmaps;  /* 1: a lookup for a ray reads the level whose texels are about as large as what the ray sees, as Cycles
+                        does with a texture cache: each level has half the sides of the one before, rounded down and at least
+                        1, until both are at most 64. The library makes the levels of ROWS; those of BLOCKS follow the image,
+                        each in blocks of its own, whose texels lancer_make_mipmaps() makes. 0: lookups read the image */
+  uint32_t reserved;
 } lancer_image;
+
+/* Makes the levels of an image of ROWS whose alpha is not STRAIGHT with four channels. levels: level 1 and all smaller ones, one
+ * after another, each [height][width][channels] of the image's kind. */
+LANCER_API lancer_status lancer_make_mipmaps(const lancer_image *image, void *levels);
 
 /* ---- nodes ------------------------------------------------------------------------------------------------------ */
 
@@ -569,6 +578,10 @@ enum lancer_mix_mode {
   LANCER_MIX_VALUE,
   LANCER_MIX_COUNT
 };
+
+/* A flag of nodes of all kinds: the value is taken as constant over a pixel where an image with mipmaps follows how its
+ * coordinates change, as Cycles takes the values of most nodes. */
+#define LANCER_NODE_STEADY 2147483648u
 
 typedef struct lancer_node {
   uint32_t kind;               /* LANCER_NODE_* */

@@ -1,5 +1,6 @@
 // Scenes in the C interface: checks handles and pointers, turns exceptions into statuses, and calls the rooms.
 #include "lancer_probes.h"
+#include "nodes/mipmaps.h"
 #include "objects.h"
 #include "render/denoised.h"
 #include "render/session.h"
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <utility>
 
 namespace {
@@ -96,7 +98,28 @@ lancer_status lancer_scene_add_object_attribute(lancer_scene scene, const char *
 }
 
 lancer_status lancer_scene_add_image(lancer_scene scene, const lancer_image *image) {
-  return fill_scene(scene, image, "image", [&](Description &description) { add_image(description, *image); });
+  return fill_scene(scene, image, "image", [&](Description &description) {
+    add_image(description, *image);
+    if (!description.images.back().blocks)
+      make_mipmaps(description.images.back());
+  });
+}
+
+lancer_status lancer_make_mipmaps(const lancer_image *image, void *levels) {
+  return guard([&] {
+    require(image, "image");
+    require(levels, "levels");
+    lancer_image source = *image;
+    source.mipmaps = 1;
+    Description description;
+    add_image(description, source);
+    Image &made = description.images.back();
+    if (made.blocks || (made.alpha == AlphaMode::Straight && made.channels == 4))
+      bad_argument("image: levels are made of rows, whose colour is multiplied by alpha");
+    make_mipmaps(made);
+    std::memcpy(levels, made.texels.get() + made.level_offset(1), made.bytes() - made.level_offset(1));
+    return LANCER_OK;
+  });
 }
 
 lancer_status lancer_scene_set_world(lancer_scene scene, const lancer_world *world) {

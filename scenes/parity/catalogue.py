@@ -20,6 +20,7 @@ SUBJECTS = (
     "furnaces_principled",
     "textures_images",
     "textures_files",
+    "textures_cached",
     "textures_frames",
     "textures_tiles",
     "textures_coordinates",

@@ -10,6 +10,7 @@ template <class F> struct BsdfValue {
   using V = Vec3<F>;
   V part[3] = {V(F(0.0f)), V(F(0.0f)), V(F(0.0f))}; // by Component
   F pdf{0.0f};
+  F alpha2{0.0f}; // sum of the lobes' densities times their alpha_x alpha_y, where Bsdf::spreads is set
 
   LANCER_LANE V f() const { return part[0] + part[1] + part[2]; }
 };
@@ -26,6 +27,7 @@ template <class F> struct BsdfSample {
   WordOf<F> component{0u};                   // Component of the sampled lobe
   MaskOf<F> diffuse = uniform<F>(false);     // the ray is a diffuse one: also of velvet, whose light is glossy
   F alpha2{1.0f};                            // alpha_x alpha_y of the sampled lobe; 0 for a single direction
+  F mean_alpha2{0.0f}; // of all lobes by their densities for wi, where Bsdf::spreads is set; 0 for a single direction
   // Light enters the surface along wi, which is a single direction, to walk below it; the following describe the walk.
   MaskOf<F> entered = uniform<F>(false);
   V below_color{F(0.0f)}, below_radius{F(0.0f)}; // radius in the user's units
@@ -68,7 +70,8 @@ template <class F> struct Bsdf {
   B smooth = uniform<F>(false);    // some lobe has more than single directions; set by complete()
   B transmits = uniform<F>(false); // some lobe transmits; set by complete()
   bool bump_correction = true;
-  bool shares = true; // samples carry their shares by component
+  bool shares = true;   // samples carry their shares by component
+  bool spreads = false; // samples carry the mean roughness of their direction
   WordOf<F> key{0u};  // of the numbers of Huang's fibre, whose value is an estimate by numbers of its own
   int frame_count = 0;
   int count = 0;

@@ -234,6 +234,8 @@ BsdfValue<F> Bsdf<F>::sum(const Local &local, const Drawn &drawn, bool lit, uint
       V &part = value.part[static_cast<int>(component)];
       part = select(lanes, part + lobe.color * term.f * bump, part);
       value.pdf = select(lanes & counts, value.pdf + lobe.probability * term.pdf, value.pdf);
+      if (spreads)
+        value.alpha2 = select(lanes & counts, value.alpha2 + lobe.probability * term.pdf * alpha2_of(lobe), value.alpha2);
     };
     const V &wo_l = wo_local[lobe.frame];
     if (lobe.shape == LobeShape::Lambert || lobe.shape == LobeShape::Matte || lobe.shape == LobeShape::Sheen ||

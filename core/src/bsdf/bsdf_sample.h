@@ -226,6 +226,8 @@ template <class F> BsdfSample<F> Bsdf<F>::sample(F u_lobe, F u, F v) const {
     const V f = value.f();
     result.weight = select(found, f / value.pdf, result.weight);
     result.pdf = select(found, value.pdf, result.pdf);
+    if (spreads)
+      result.mean_alpha2 = select(found, value.alpha2 / value.pdf, zero);
     for (int k = 0; k < 2 && shares; ++k) {
       const V share = value.part[k] / f;
       result.share[k] = {select(found & (f.x > zero), share.x, result.share[k].x),

@@ -90,7 +90,8 @@ bool all_painted(const Program &program, const Schedule &schedule) {
 
 Cutout recognise(const Material &material, const std::vector<Image> &images) {
   Cutout cutout;
-  if (!material.transmittance.varies())
+  // Levels of images are chosen by the ray.
+  if (!material.transmittance.varies() || material.program.mipmapped)
     return cutout;
   Parameter share;
   cutout.alpha = find_alpha(material, images, share);

@@ -96,6 +96,7 @@ private:
     context.normalisation = &unchanged;
     context.surface = &surface;
     context.wo = surface.ng;
+    context.displaces = true;
     lancer::run(material.program, material.displacement_nodes, context, values);
     return glm::dvec3(value_of(material.displacement, values));
   }
@@ -105,7 +106,7 @@ private:
     std::vector<glm::dvec3> offsets(places_.size());
     size_t most = 0;
     for (const Material &material : description_.materials)
-      most = std::max(most, material.program.nodes.size());
+      most = std::max(most, material.program.value_count());
     constexpr size_t at_once = 4096;
     parallel_for(context_, (places_.size() + at_once - 1) / at_once, [&](size_t piece) {
       std::vector<glm::vec4> values(most);

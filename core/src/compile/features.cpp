@@ -159,6 +159,8 @@ void add_material(const Material &material, Features &features) {
     features.bits |= kFeatureNodes;
   if (uses_images(material.program))
     features.bits |= kFeatureTextures;
+  if (material.program.mipmapped)
+    features.bits |= kFeatureMipmaps;
   if (material.displaces())
     features.bits |= kFeatureDisplacement;
   if (material.holdout.varies() || material.holdout.value.x > 0.0f)
@@ -197,6 +199,8 @@ Features find_features(const Description &description) {
     features.bits |= kFeatureEnvironment;
   if (world.varies())
     features.bits |= kFeatureEnvironmentMap;
+  if (world.program.mipmapped)
+    features.bits |= kFeatureMipmaps;
   return features;
 }
 
@@ -207,7 +211,7 @@ std::string feature_names(const Features &features) {
                                      "cylinders",    "cones",     "point-lights", "spot-lights",     "sun-lights",
                                      "area-lights",  "emitters",  "environment",  "environment-map", "vertex-colors",
                                      "nodes",        "textures",  "displacement", "holdout",         "visibility",
-                                     "glass",        "portals",   "walks"};
+                                     "glass",        "portals",   "walks",       "mipmaps"};
   static_assert(std::size(shapes) == kLobeShapes);
   std::string text;
   const auto add = [&](const char *name) {

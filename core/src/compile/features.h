@@ -33,6 +33,7 @@ enum Feature : uint32_t {
   kFeatureGlass = 1u << 20,      // some material reflects and refracts
   kFeaturePortals = 1u << 21,    // some surface sends light on elsewhere
   kFeatureSubsurface = 1u << 22, // light enters some surface
+  kFeatureMipmaps = 1u << 23,    // some node reads levels of an image
 };
 
 struct Features {

@@ -24,7 +24,7 @@ class EmissionAt {
 public:
   // materials and all that scene points to must outlive this object.
   EmissionAt(const NodeScene &scene, std::span<const Material> materials)
-      : materials_(materials), nodes_(scene, most_nodes(materials)) {}
+      : materials_(materials), nodes_(scene, most_values(materials)) {}
 
   // Returns the radiance that a surface emits towards the unit world direction wo. path: of the vertex that samples the light.
   glm::vec3 operator()(const Surface &surface, const glm::vec3 &wo, const LightPath<float> &path);

@@ -91,11 +91,13 @@ Environment::Environment(const World &world, const std::vector<Image> &images, c
       mean_(double(weight_of(world.radiance.value))), hidden_from_(world.hidden_from) {
   if (!world.varies())
     return;
+  const uint32_t across = world.map_resolution > 0 ? world.map_resolution : std::max(image_width(world, images), 4096u);
+  finest_ = 2.0f * glm::pi<float>() / float(across);
   if (has_directions(world)) {
     make_maps(context, glass);
     return;
   }
-  std::vector<glm::vec4> values(world.program.nodes.size());
+  std::vector<glm::vec4> values(world.program.value_count());
   mean_ = double(weight_of(evaluate(glm::dvec3(0.0, 0.0, 1.0), values, nullptr, nullptr)));
 }
 
@@ -125,7 +127,7 @@ void Environment::make_maps(const BuildContext &context, bool glass) {
   std::vector<float> weights(size_t(width) * height);
   std::vector<double> totals(height);
   parallel_for(context, height, [&](size_t row) {
-    std::vector<glm::vec4> values(world_->program.nodes.size());
+    std::vector<glm::vec4> values(world_->program.value_count());
     for (uint32_t column = 0; column < width; ++column) {
       float sum = 0.0f;
       for (uint32_t look = 0; look < looks * looks; ++look) {
@@ -172,7 +174,7 @@ void Environment::make_maps(const BuildContext &context, bool glass) {
 double Environment::flux_of(const Sun &sun, const Program &plain) const {
   DirectionMap disc(4, 2, std::vector<float>(8, 1.0f));
   disc.add_disc(sun.axis, sun.half_angle, 0.5);
-  std::vector<glm::vec4> values(world_->program.nodes.size());
+  std::vector<glm::vec4> values(world_->program.value_count());
   double sum = 0.0;
   for (int i = 0; i < kSunLooks * kSunLooks; ++i) {
     // The first half of the numbers is the disc's.

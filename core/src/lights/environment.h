@@ -43,6 +43,9 @@ public:
   bool is_light() const { return !above_mean_.empty(); }
   const glm::vec3 &constant() const { return constant_; }
   uint32_t hidden_from() const { return hidden_from_; }
+  // Largest angle over which images with mipmaps are averaged for other rays than the camera's: as in Cycles, a cell of the map
+  // that Cycles samples.
+  float finest() const { return finest_; }
   // Mean over all directions of the mean of the channels.
   double mean() const { return mean_; }
 
@@ -81,6 +84,7 @@ private:
   const Normalisation *normalisation_ = nullptr;
   glm::vec3 constant_{0.0f};
   double mean_ = 0.0;
+  float finest_ = 0.0f;
   uint32_t hidden_from_ = 0;
   DirectionMap above_mean_, in_proportion_;
 };

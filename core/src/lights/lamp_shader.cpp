@@ -70,7 +70,7 @@ LampPoint lamp_point(const Light &light, const LampShaders &shaders, const glm::
 double mean_strength(const Light &light, const LampShaders &shaders, const NodeScene &scene) {
   const LampShader &shader = shaders.of[light.shader];
   const Normalisation plain, &normalisation = scene.normalisation ? *scene.normalisation : plain;
-  std::vector<glm::vec4> values(shader.program.nodes.size());
+  std::vector<glm::vec4> values(shader.program.value_count());
   NodeContext context;
   static_cast<NodeScene &>(context) = scene;
   context.geometry = &shaders.frames;

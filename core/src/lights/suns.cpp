@@ -25,7 +25,7 @@ glm::dvec3 vector_at(const World &world, const NodeScene &scene, const Node &nod
 
 std::vector<Sun> find_suns(const World &world, const NodeScene &scene) {
   std::vector<Sun> suns;
-  std::vector<glm::vec4> values(world.program.nodes.size());
+  std::vector<glm::vec4> values(world.program.value_count());
   for (const uint16_t number : world.schedule) {
     const Node &node = world.program.nodes[number];
     if (node.kind != NodeKind::Sky || node.option <= SkyModel::HosekWilkie || !(node.matrix[9] > 0.0f) ||

@@ -36,7 +36,7 @@ struct alignas(64) LookingLanes {
 // The inputs of nodes in lanes. The caller sets the used lanes of every array that the kind of place needs; other lanes are not
 // read as input.
 //
-// Data that only LIGHT_PATH reads may be missing. On a surface, the caller sets all arrays except eye: ns and ng are unit, on
+// Data that only LIGHT_PATH and images with mipmaps read may be missing. On a surface, the caller sets all arrays except eye: ns and ng are unit, on
 // the viewer's side; backfacing marks lanes where the surface's own normals are on the other side. For directions of the world
 // (surface is false), the caller sets p (the direction), ns = ng = wo = -p, and eye.
 struct alignas(64) NodeBlock {
@@ -54,7 +54,7 @@ struct alignas(64) NodeBlock {
   // The members of LightPath.
   uint32_t kinds[kBlockLanes];
   float length[kBlockLanes], depth[kBlockLanes], diffuse[kBlockLanes], glossy[kBlockLanes], transmission[kBlockLanes],
-      transparent[kBlockLanes], portal[kBlockLanes];
+      transparent[kBlockLanes], portal[kBlockLanes], width[kBlockLanes], spread[kBlockLanes];
 };
 
 inline void put(const LightPath<float> &path, NodeBlock &block, uint32_t lane) {
@@ -66,6 +66,8 @@ inline void put(const LightPath<float> &path, NodeBlock &block, uint32_t lane) {
   block.transmission[lane] = path.transmission;
   block.transparent[lane] = path.transparent;
   block.portal[lane] = path.portal;
+  block.width[lane] = path.width;
+  block.spread[lane] = path.spread;
 }
 
 // Results of one node: x, y, z or RGB, and alpha.

@@ -158,16 +158,16 @@ template <class F> Value<F> color_model_node(const Inputs<F> &in) {
   }
 }
 
-template <class F> Value<F> grey_node(const Inputs<F> &in) {
+template <class In, class F = typename In::Number> Value<F> grey_node(const In &in) {
   const float *weights = in.node.matrix;
   return scalar(F(dot(in[0], Vector3<F>(F(weights[0]), F(weights[1]), F(weights[2])))));
 }
 
-template <class F> Value<F> separate_node(const Inputs<F> &in) {
+template <class In, class F = typename In::Number> Value<F> separate_node(const In &in) {
   const Vector3<F> v = in[0];
   return scalar(in.node.option == 0 ? v.x : in.node.option == 1 ? v.y : v.z);
 }
-template <class F> Value<F> combine_node(const Inputs<F> &in) {
+template <class In, class F = typename In::Number> Value<F> combine_node(const In &in) {
   return solid(Vector3<F>(in.scalar(0), in.scalar(1), in.scalar(2)));
 }
 

@@ -28,9 +28,9 @@ template <class F> Value<F> node_value(const Program &program, const Inputs<F> &
   case NodeKind::Attribute:
     return attribute_node(node, node.flags & AttributeFlag::Still ? site.standing() : site);
   case NodeKind::Image:
-    return image_node(in, site);
+    return image_node(program, in, site);
   case NodeKind::Environment:
-    return environment_node(in, site);
+    return environment_node(program, in, site);
   case NodeKind::Alpha:
     return scalar(in.alpha(0));
   case NodeKind::Mapping:
@@ -118,8 +118,16 @@ template <class F> Value<F> node_value(const Program &program, const Inputs<F> &
 
 template <class F>
 void run_nodes(const Program &program, const Schedule &schedule, const Site<F> &site, const Values<F> &values) {
-  for (const uint16_t number : schedule)
-    values.set(number, node_value(program, Inputs<F>{program.nodes[number], values}, site));
+  for (const uint16_t number : schedule) {
+    const Node &node = program.nodes[number];
+    const Inputs<F> in{node, values};
+    values.set(number, node_value(program, in, site));
+    if (node.changes < 0)
+      continue;
+    const Change<F> change = node_change(program, in, site);
+    values.set(size_t(node.changes), solid(change.x));
+    values.set(size_t(node.changes) + 1, solid(change.y));
+  }
 }
 
 } // namespace
@@ -166,6 +174,8 @@ template <class F> Site<F> site_of(const NodeBlock &block, int first) {
   site.path.transmission = floats(block.transmission);
   site.path.transparent = floats(block.transparent);
   site.path.portal = floats(block.portal);
+  site.path.width = floats(block.width);
+  site.path.spread = floats(block.spread);
   return site;
 }
 

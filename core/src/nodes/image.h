@@ -28,23 +28,23 @@ struct ImageView {
   uint32_t blocks_across = 0; // 0: texels are rows
 };
 
-// Returns the view of nodes with these flags. Valid as long as the image is neither changed nor moved.
-LANCER_LANE ImageView image_view(const Image &image, uint32_t flags) {
+// Returns the view of a level of the image, of nodes with these flags. Valid as long as the image is neither changed nor moved.
+LANCER_LANE ImageView image_view(const Image &image, uint32_t flags, uint32_t level = 0) {
   const bool multiplied = image.alpha == AlphaMode::Associated || image.alpha == AlphaMode::Straight;
   ImageView r;
-  r.texels = image.data();
+  r.texels = image.data() + image.level_offset(level);
   r.matrix = image.has_matrix ? &image.matrix : nullptr;
-  r.width = image.width;
-  r.height = image.height;
+  r.width = level_side(image.width, level);
+  r.height = level_side(image.height, level);
   r.channels = image.channels;
   r.texel_bytes = image.channel_bytes();
   r.extension = static_cast<Extension>(flags & 0xf);
   r.interpolation = static_cast<Interpolation>(flags >> 4 & 0xf);
   r.curve = image.transfer == Transfer::Srgb;
-  r.large = image.bytes() >= uint64_t(1) << 31;
+  r.large = image.level_bytes(level) >= uint64_t(1) << 31;
   r.keeps_alpha = image.channels == 4 && image.alpha != AlphaMode::None;
   r.has_gaps = image.has_gaps;
-  r.blocks_across = image.blocks ? image.blocks_across() : 0;
+  r.blocks_across = image.blocks ? blocks_along(r.width) : 0;
   r.straight = (flags & 256) && multiplied && image.channels > 1;
   return r;
 }

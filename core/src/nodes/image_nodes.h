@@ -2,18 +2,26 @@
 // lanes.h.
 #pragma once
 
+#include "nodes/cell_hash.h"
+#include "nodes/changes.h"
 #include "nodes/look_up.h"
 #include "nodes/vector_nodes.h"
-#include "sampling/elementary.h"
 
 namespace lancer {
 namespace {
 
 constexpr uint32_t kTileOfEachSide = 512; // flag of a box
 
-template <class F> struct Place { F u, v; };
+// A place in an image, and the squares of its coordinates' changes over a pixel.
+template <class F> struct Place {
+  F u, v, u2 = F(0.0f), v2 = F(0.0f);
+};
 template <class F> LANCER_LANE Place<F> select(const MaskOf<F> &m, const Place<F> &a, const Place<F> &b) {
-  return {select(m, a.u, b.u), select(m, a.v, b.v)};
+  return {select(m, a.u, b.u), select(m, a.v, b.v), select(m, a.u2, b.u2), select(m, a.v2, b.v2)};
+}
+template <class F> LANCER_LANE Place<F> squared(const Place<Dual<F>> &place) {
+  const auto square = [](const Dual<F> &x) { return x.dx * x.dx + x.dy * x.dy; };
+  return {place.u.of, place.v.of, square(place.u), square(place.v)};
 }
 
 // Replaces a missing image.
@@ -23,8 +31,26 @@ template <class F> LANCER_LANE const Image &picture(const Inputs<F> &in, const S
   return (*site.scene.images)[in.node.image + number];
 }
 
-template <class F> Value<F> look_up(const Inputs<F> &in, const Image &image, const Place<F> &place) {
-  const Texel<F> found = look_up(image_view(image, in.node.flags), place.u, place.v);
+// Returns a number in [0, 1) that differs from hit to hit, and from node to node.
+template <class F> F number_of_hit(const Site<F> &site, const Node &node) {
+  using U = WordOf<F>;
+  const auto word = [](const DoubleOf<F> &x) {
+    const F high = narrow(x), low = narrow(x - widen(high));
+    return as_word(high) ^ rotated(as_word(low), 16);
+  };
+  return unit_of<F>(cell_hash({word(site.p.x), word(site.p.y), word(site.p.z), U(uint32_t(node.inputs[0].node))}));
+}
+
+template <class F> Value<F> look_up(const Inputs<F> &in, const Site<F> &site, const Image &image, const Place<F> &place) {
+  Texel<F> found;
+  if (image.levels == 1) {
+    found = look_up(image_view(image, in.node.flags), place.u, place.v);
+  } else {
+    const F width(static_cast<float>(image.width)), height(static_cast<float>(image.height));
+    const F number = number_of_hit(site, in.node), across2 = place.u2 * (width * width), up2 = place.v2 * (height * height);
+    found = look_up_level(image, in.node.flags, place.u, place.v,
+                          level_of(image, across2, up2, site.displaces ? nullptr : &number));
+  }
   return {found.color, found.alpha};
 }
 
@@ -36,7 +62,7 @@ Value<F> look_up_each(const Inputs<F> &in, const Site<F> &site, const WordOf<F> 
   for (uint32_t i = 0; i < in.node.image_count; ++i) {
     const auto here = equal(number, WordOf<F>(i));
     if (any(here))
-      r = select(here, look_up(in, picture(in, site, i), place), r);
+      r = select(here, look_up(in, site, picture(in, site, i), place), r);
   }
   return r;
 }
@@ -56,7 +82,7 @@ template <class F> Value<F> look_up_tile(const Inputs<F> &in, const Site<F> &sit
       ++k;
     return k;
   });
-  return look_up_each(in, site, select(known, number, U(in.node.image_count)), {place.u - column, place.v - row});
+  return look_up_each(in, site, select(known, number, U(in.node.image_count)), {place.u - column, place.v - row, place.u2, place.v2});
 }
 
 // Returns longitude and latitude of a point in the box -1 ... 1.
@@ -100,23 +126,38 @@ template <class F> Vector3<F> box_shares(const Vector3<F> &n, const F &blend) {
   return select(alone(n.x, n.y, n.z), V3(one, zero, zero), shares);
 }
 
-template <class F> Value<F> box(const Inputs<F> &in, const Site<F> &site, const Image &image) {
+// Returns the places on a box's sides, oriented so that no image is mirrored. n: outwards.
+template <class F, class N> void box_places(const Vector3<N> &p, const Vector3<F> &n, Place<N> (&places)[3]) {
+  const F zero(0.0f);
+  const N one(1.0f);
+  places[0] = {select(n.x < zero, one - p.y, p.y), p.z};
+  places[1] = {select(n.y > zero, one - p.x, p.x), p.z};
+  places[2] = {select(n.z > zero, one - p.y, p.y), p.x};
+}
+
+template <class F> Value<F> box(const Program &program, const Inputs<F> &in, const Site<F> &site, const Image &image) {
   const F zero(0.0f), one(1.0f);
-  const Vector3<F> p = in[0], n = normal_to_object(site, site.ns), size = abs(n);
+  const Vector3<F> n = normal_to_object(site, site.ns), size = abs(n);
   const F sum = size.x + size.y + size.z;
   const Vector3<F> unit = select(sum > zero, size / sum, Vector3<F>(one, zero, zero));
   const Vector3<F> shares = box_shares(unit, in.scalar(1));
-  // Orient each side so that no image is mirrored.
-  const Place<F> places[3] = {{select(n.x < zero, one - p.y, p.y), p.z},
-                              {select(n.y > zero, one - p.x, p.x), p.z},
-                              {select(n.z > zero, one - p.y, p.y), p.x}};
+  Place<F> places[3];
+  if (in.node.mipmapped) {
+    Place<Dual<F>> changing[3];
+    box_places(ChangingInputs<F>{program, in, in.node}[0], n, changing);
+    for (int i = 0; i < 3; ++i)
+      places[i] = squared(changing[i]);
+  } else {
+    box_places(in[0], n, places);
+  }
   const F share[3] = {shares.x, shares.y, shares.z};
   Value<F> result = nothing<F>();
   for (int i = 0; i < 3; ++i) {
     const auto shown = share[i] > zero;
     if (!any(shown))
       continue;
-    const Value<F> side = in.node.flags & kTileOfEachSide ? look_up_tile(in, site, places[i]) : look_up(in, image, places[i]);
+    const Value<F> side =
+        in.node.flags & kTileOfEachSide ? look_up_tile(in, site, places[i]) : look_up(in, site, image, places[i]);
     const Value<F> more{result.v + share[i] * side.v, result.alpha + share[i] * side.alpha};
     result = select(shown, more, result);
   }
@@ -141,39 +182,57 @@ template <class F> Value<F> cube(const Inputs<F> &in, const Site<F> &site, const
   return select(nowhere, nothing<F>(), look_up_each(in, site, side, place));
 }
 
-template <class F> Value<F> image_node(const Inputs<F> &in, const Site<F> &site) {
+template <class N> Place<N> projected(uint32_t projection, const Vector3<N> &p) {
+  const Vector3<N> around = N(2.0f) * p - Vector3<N>(N(1.0f));
+  return projection == ImageProjection::Sphere ? on_sphere(around)
+         : projection == ImageProjection::Tube ? on_tube(around)
+                                               : Place<N>{p.x, p.y};
+}
+
+template <class F> Value<F> image_node(const Program &program, const Inputs<F> &in, const Site<F> &site) {
   if (in.node.image_count == 0)
     return missing<F>();
   const Image &first = picture(in, site, 0);
-  const Vector3<F> p = in[0], around = F(2.0f) * p - Vector3<F>(F(1.0f));
   if (in.node.option == ImageProjection::Box)
-    return box(in, site, first);
-  const Place<F> place = in.node.option == ImageProjection::Sphere ? on_sphere(around)
-                         : in.node.option == ImageProjection::Tube ? on_tube(around)
-                                                                   : Place<F>{p.x, p.y};
-  return first.tile != 0 ? look_up_tile(in, site, place) : look_up(in, first, place);
+    return box(program, in, site, first);
+  const Place<F> place = in.node.mipmapped
+                             ? squared(projected(in.node.option, ChangingInputs<F>{program, in, in.node}[0]))
+                             : projected(in.node.option, in[0]);
+  return first.tile != 0 ? look_up_tile(in, site, place) : look_up(in, site, first, place);
 }
 
-template <class F> Value<F> environment_node(const Inputs<F> &in, const Site<F> &site) {
+// The mirror ball is seen along +y. The normal that mirrors the view to d is halfway between the viewer and d.
+template <class N> Place<N> on_mirror_ball(const Vector3<N> &d) {
+  const N zero(0.0f), one(1.0f), half(0.5f);
+  const N size = N(2.0f) * sqrt(max(N(-0.5f) * (d.y - one), zero)), length = select(size > zero, size, one);
+  return {half * (d.x / length + one), half * (d.z / length + one)};
+}
+
+template <class F> Value<F> environment_node(const Program &program, const Inputs<F> &in, const Site<F> &site) {
   using D = DoubleOf<F>;
   const Vector3<F> given = in[0];
   if (in.node.option == EnvironmentProjection::Cube)
     return cube(in, site, unit_or_zero(given));
   if (in.node.image_count == 0)
     return missing<F>();
-  const F zero(0.0f), one(1.0f), half(0.5f);
+  const F zero(0.0f);
+  const bool is_ball = in.node.option == EnvironmentProjection::MirrorBall;
   Place<F> place;
-  if (in.node.option == EnvironmentProjection::MirrorBall) {
-    // The mirror ball is seen along +y. The normal that mirrors the view to d is halfway between the viewer and d.
-    const Vector3<F> d = unit_or_zero(given);
-    const F size = F(2.0f) * sqrt(max(F(-0.5f) * (d.y - one), zero)), length = select(size > zero, size, one);
-    place = {half * (d.x / length + one), half * (d.z / length + one)};
+  if (is_ball) {
+    place = on_mirror_ball(unit_or_zero(given));
   } else {
     const Vector3<D> d = widen(given);
     const MapPlace<D> seen = place_on_map(d.x, d.y, d.z, D(sqrt(d.x * d.x + d.y * d.y)));
     place = select(black(given), Place<F>{zero, zero}, Place<F>{narrow(D(0.5) - seen.x), narrow(D(0.5) + seen.y)});
   }
-  return look_up(in, picture(in, site, 0), place);
+  if (in.node.mipmapped) {
+    // Longitudes are those of a sphere around another axis, and change as much.
+    const Vector3<Dual<F>> d = ChangingInputs<F>{program, in, in.node}[0];
+    const Place<F> changing = squared(is_ball ? on_mirror_ball(unit_or_zero(d)) : on_sphere(Vector3<Dual<F>>(d.y, d.x, d.z)));
+    place.u2 = changing.u2;
+    place.v2 = changing.v2;
+  }
+  return look_up(in, site, picture(in, site, 0), place);
 }
 
 } // namespace

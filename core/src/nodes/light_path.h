@@ -16,6 +16,9 @@ template <class F> struct LightPath {
   F length = F(0.0f);              // of the ray, in the user's units
   // Scattering events before the ray: all, and by kind; surfaces passed straight through, portals included; portals.
   F depth = F(0.0f), diffuse = F(0.0f), glossy = F(0.0f), transmission = F(0.0f), transparent = F(0.0f), portal = F(0.0f);
+  // The width of what a pixel sees at the end of the ray, normalised units, and its growth along the ray; for a direction of
+  // the world both are the angle. For images with mipmaps: elsewhere they are not read.
+  F width = F(0.0f), spread = F(0.0f);
 };
 
 // which: PathFact.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "nodes/image.h"
+#include "sampling/elementary.h"
 #include "simd/memory.h"
 #include "simd/vectors.h"
 
@@ -269,6 +270,40 @@ template <class F> LANCER_LANE Texel<F> look_up(const ImageView &image, const F 
     texel.alpha = select(is_finite(texel.alpha), texel.alpha, zero);
   }
   return select(place, texel, Texel<F>::zero());
+}
+
+// Returns the level of an image for a place whose coordinates change over a pixel by distances of these squares, in texels: the
+// smaller change decides, but at most four levels below the larger one. u in [0, 1) chooses between two levels near their
+// border, as Cycles does; without it, the finer one is taken.
+template <class F> LANCER_LANE WordOf<F> level_of(const Image &image, const F &across2, const F &up2, const F *u) {
+  using U = WordOf<F>;
+  const F zero(0.0f), most(3.0e38f), smaller = min(across2, up2), larger = max(across2, up2);
+  const F change2 = min(max(smaller, larger * F(1.0f / 256.0f)), most);
+  // The level is half the logarithm to base 2, plus 1/4 ... 3/4; that of a power of two is the number's exponent.
+  const F raised = u ? min(change2 * exp(F(0.34657359f) + F(0.69314718f) * *u), most) : change2;
+  const auto counts = raised >= F(1.0f);
+  const U exponent = (as_word(select(counts, raised, F(1.0f))) >> 23) - U(127u);
+  const F level = min(to_float(exponent >> 1), F(static_cast<float>(image.levels - 1)));
+  return truncate(select(counts, level, zero));
+}
+
+// Looks up each lane in its own level. Beyond the edge of a clipped image all is 0, also within half a texel.
+template <class F>
+LANCER_LANE Texel<F> look_up_level(const Image &image, uint32_t flags, const F &u, const F &v, const WordOf<F> &level) {
+  Texel<F> texel = Texel<F>::zero();
+  for (uint32_t i = 0; i < image.levels; ++i) {
+    const auto here = equal(level, WordOf<F>(i));
+    if (!any(here))
+      continue;
+    // Other lanes look where one of these looks: their own texels of this level may be on no page in memory.
+    const int one = __builtin_ctz(bits(here));
+    const F x = select(here, u, F(lane(u, one))), y = select(here, v, F(lane(v, one)));
+    texel = select(here, look_up(image_view(image, flags, i), x, y), texel);
+  }
+  const F zero(0.0f), whole(1.0f);
+  if (static_cast<Extension>(flags & 0xf) != Extension::Clip)
+    return texel;
+  return select((u >= zero) & (u <= whole) & (v >= zero) & (v <= whole), texel, Texel<F>::zero());
 }
 
 // Returns the alpha only.

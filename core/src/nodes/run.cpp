@@ -31,6 +31,7 @@ Site<float> site_of(const NodeContext &context) {
   site.wo = context.wo;
   site.footprint = context.footprint;
   site.eye[0] = context.eye;
+  site.displaces = context.displaces;
   site.path = context.path;
   if (!context.surface) {
     // For the world only the direction is defined; its surface faces the viewer.
@@ -98,10 +99,10 @@ void MaterialNodes::run_painted(const Program &program, const Schedule &schedule
   run(program, schedule, surface, {});
 }
 
-size_t most_nodes(std::span<const Material> materials) {
+size_t most_values(std::span<const Material> materials) {
   size_t most = 0;
   for (const Material &material : materials)
-    most = std::max(most, material.program.nodes.size());
+    most = std::max(most, material.program.value_count());
   return most;
 }
 

@@ -5,7 +5,7 @@
 // nodes to evaluate. To run a program for a block:
 //
 //   NodeBlock block;               // block.h; set scene and the lanes, and their bits in used
-//   NodeLanes values[nodes];       // room for all nodes of the program
+//   NodeLanes values[count];       // Program::value_count()
 //   node_kernel().run(program, schedule, block, values);
 //   values[parameter.node].of[k][lane]  // k = 0 ... 3: x, y, z, alpha
 //
@@ -31,10 +31,11 @@ struct NodeContext : NodeScene {
   glm::vec3 wo{0, 0, 1};            // unit, towards the viewer; for the world the negated direction
   float footprint = 0.0f;           // radius of the pixel's footprint, normalised units: the step of BUMP; 0: no bumps
   const glm::dvec3 *eye = nullptr;  // for the world: origin of the camera ray; null: any other ray
+  bool displaces = false;           // a vertex is displaced
   LightPath<float> path;            // of the ray
 };
 
-// Computes the scheduled nodes. values has room for all nodes of the program.
+// Computes the scheduled nodes. values has room for Program::value_count().
 void run(const Program &program, const Schedule &schedule, const NodeContext &context, std::span<glm::vec4> values);
 
 // Runs a program for a block.
@@ -61,8 +62,8 @@ struct View {
 // One object per thread: it keeps the values of the last run.
 class MaterialNodes {
 public:
-  // nodes: the most nodes of a program.
-  MaterialNodes(const NodeScene &scene, size_t nodes) : values_(nodes) { static_cast<NodeScene &>(context_) = scene; }
+  // values: the most values of a program.
+  MaterialNodes(const NodeScene &scene, size_t values) : values_(values) { static_cast<NodeScene &>(context_) = scene; }
 
   // Evaluates surfaces of this geometry instead of the scene's; it must outlive this object.
   void set_geometry(const Geometry &geometry) { context_.geometry = &geometry; }
@@ -81,7 +82,7 @@ private:
   std::vector<glm::vec4> values_;
 };
 
-// Returns the most nodes of a material's program.
-size_t most_nodes(std::span<const Material> materials);
+// Returns the most values of a material's program.
+size_t most_values(std::span<const Material> materials);
 
 } // namespace lancer

@@ -73,6 +73,7 @@ template <class F> struct Site {
   bool placed = false;                   // lanes have instances
   bool together = false;                 // and all lanes have the same one
   bool in_height = false;                // a BUMP is evaluating its height
+  bool displaces = false;                // a vertex is displaced, seen by nobody
   const Site *still = nullptr;           // then, the site of the bump itself
   const Instance *instance[kWidth];
   const Mesh *mesh[kWidth]; // null on exact surfaces
@@ -172,6 +173,7 @@ template <class F> LANCER_LANE Vector3<DoubleOf<F>> user_position(const Site<F> 
 
 // The input values of one node.
 template <class F> struct Inputs {
+  using Number = F;
   const Node &node;
   Values<F> values;
 

@@ -39,7 +39,7 @@ template <class F> Columns<F> turn_by(const Vector3<F> &angles) {
   return z * y * x;
 }
 
-template <class F> Value<F> vector_math_node(const Inputs<F> &in) {
+template <class In, class F = typename In::Number> Value<F> vector_math_node(const In &in) {
   using V3 = Vector3<F>;
   const V3 a = in[0], b = in[1];
   switch (in.node.option) {
@@ -101,7 +101,7 @@ template <class F> Value<F> vector_math_node(const Inputs<F> &in) {
 }
 
 // Returns the rotation of a node, mostly one constant for all lanes.
-template <class F> LANCER_LANE Columns<F> turn_of(const Inputs<F> &in) {
+template <class In, class F = typename In::Number> LANCER_LANE Columns<F> turn_of(const In &in) {
   if (in.node.inputs[2].varies())
     return turn_by(in[2]);
   const glm::mat3 turn = rotation(in.node.inputs[2].value);
@@ -111,7 +111,7 @@ template <class F> LANCER_LANE Columns<F> turn_of(const Inputs<F> &in) {
   return r;
 }
 
-template <class F> Value<F> mapping_node(const Inputs<F> &in) {
+template <class In, class F = typename In::Number> Value<F> mapping_node(const In &in) {
   const Vector3<F> v = in[0], location = in[1], scale = in[3];
   const Columns<F> turn = turn_of(in);
   switch (in.node.option) {

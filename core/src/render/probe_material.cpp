@@ -178,7 +178,7 @@ void probe_node(const Scene &scene, uint32_t material, uint32_t node, uint32_t c
 void probe_world(const Scene &scene, uint32_t count, const double *directions, float *radiance, float *pdf) {
   check_directions(directions, count);
   const Environment &environment = scene.lights.environment();
-  std::vector<glm::vec4> values(scene.world.program.nodes.size());
+  std::vector<glm::vec4> values(scene.world.program.value_count());
   for (uint32_t i = 0; i < count; ++i) {
     const glm::dvec3 wi(directions[3 * i], directions[3 * i + 1], directions[3 * i + 2]);
     store(radiance + size_t(3) * i, environment.radiance(wi, values, nullptr));

@@ -63,6 +63,8 @@ void check_image(const std::string &object, const lancer_image &source) {
     bad_argument(object + ": texels is NULL");
   if (source.layout > LANCER_LAYOUT_BLOCKS)
     refuse("layout", source.layout, "one of 0, 1");
+  if (source.mipmaps > 1)
+    refuse("mipmaps", source.mipmaps, "one of 0, 1");
   if (source.layout == LANCER_LAYOUT_BLOCKS) {
     if (const auto address = reinterpret_cast<uintptr_t>(source.texels); address % kBlockAlignment)
       refuse("address of the blocks", address, "a multiple of 64");
@@ -82,7 +84,14 @@ void copy_rows(const std::string &object, const void *rows, Image &image) {
   } catch (const std::bad_alloc &) {
     throw Error(Fault::Memory, texels + " need " + std::to_string(image.bytes() / 1000000) + " MB, more than is free");
   }
-  std::memcpy(image.texels.get(), rows, image.bytes());
+  std::memcpy(image.texels.get(), rows, image.level_bytes(0));
+}
+
+uint32_t levels_of(uint32_t width, uint32_t height) {
+  uint32_t levels = 1;
+  while (std::max(width, height) >> (levels - 1) > 1u << kBlockShift)
+    ++levels;
+  return levels;
 }
 
 } // namespace
@@ -99,6 +108,7 @@ void add_image(Description &description, const lancer_image &source) {
   image.transfer = static_cast<Transfer>(source.transfer);
   image.alpha = static_cast<AlphaMode>(source.alpha);
   image.tile = source.tile;
+  image.levels = source.mipmaps ? levels_of(source.width, source.height) : 1;
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 3; ++column)
       image.matrix[column][row] = source.matrix[3 * row + column];

@@ -159,13 +159,15 @@ public:
     const Shape shape = shape_of(given);
     if (shape.options && given.option >= shape.options)
       bad_argument(where_ + "option " + std::to_string(given.option) + " >= " + std::to_string(shape.options) + " options");
-    check_flags(where_, given.flags, flags_of(given.kind));
-    if (given.kind == LANCER_NODE_VECTOR_TRANSFORM && ((given.flags & 3) == 3 || given.flags >> 2 == 3))
-      bad_argument(where_ + "flags " + std::to_string(given.flags) + " name a space that does not exist");
+    const uint32_t flags = given.flags & ~LANCER_NODE_STEADY;
+    check_flags(where_, flags, flags_of(given.kind));
+    if (given.kind == LANCER_NODE_VECTOR_TRANSFORM && ((flags & 3) == 3 || flags >> 2 == 3))
+      bad_argument(where_ + "flags " + std::to_string(flags) + " name a space that does not exist");
     Node node;
     node.kind = given.kind;
     node.option = given.option;
-    node.flags = given.flags;
+    node.flags = flags;
+    node.steady = flags != given.flags;
     for (int i = 0; i < shape.inputs; ++i)
       node.inputs[i] = read_input(given.inputs[i], i, at);
     if (shape.matrix)
@@ -227,6 +229,8 @@ private:
       bad_argument(where_ + std::to_string(given.image_count) + " images for the 6 sides of a cube");
     node.image = given.image;
     node.image_count = given.image_count;
+    for (uint32_t i = 0; i < given.image_count; ++i)
+      node.mipmapped |= description_.images[given.image + i].levels > 1;
   }
 
   const Image &table_of(const lancer_node &given, Node &node) const {
@@ -346,6 +350,7 @@ Program read_program(Description &description, const std::string &owner, const l
     program.nodes[i].heights = uint32_t(program.heights.size());
     program.heights.push_back(height_schedule(program, i));
   }
+  program.number_changes();
   return program;
 }
 

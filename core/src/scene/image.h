@@ -42,13 +42,18 @@ enum class Interpolation : uint32_t { Linear = 0, Closest = 1, Cubic = 2 };
 inline constexpr int kBlockShift = 6;
 LANCER_LANE uint32_t blocks_along(uint32_t side) { return ((side - 1) >> kBlockShift) + 1; }
 
+// Levels of an image with mipmaps: the sides of the last fit one block.
+inline constexpr uint32_t kMostLevels = 15; // of the largest side, 2^20
+LANCER_LANE uint32_t level_side(uint32_t side, uint32_t level) { return side >> level > 1 ? side >> level : 1; }
+
 struct Image {
   std::string name;
   uint32_t width = 0, height = 0, channels = 4;
   TexelKind kind = TexelKind::U8;
   Transfer transfer = Transfer::Linear;
   AlphaMode alpha = AlphaMode::Straight;
-  uint32_t tile = 0; // UDIM; 0 = none
+  uint32_t tile = 0;   // UDIM; 0 = none
+  uint32_t levels = 1; // more: a level for a ray, each with half the sides of the one before
   bool has_matrix = false;
   bool has_gaps = false;             // texels that are not finite
   glm::mat3 matrix{1.0f};            // decoded RGB to the working space
@@ -56,14 +61,21 @@ struct Image {
   const std::byte *blocks = nullptr; // the caller's, in the order of LANCER_LAYOUT_BLOCKS
 
   LANCER_LANE const std::byte *data() const { return blocks ? blocks : texels.get(); }
-  LANCER_LANE uint32_t blocks_across() const { return blocks_along(width); }
   LANCER_LANE uint32_t channel_bytes() const { return kind == TexelKind::U8 ? 1 : kind == TexelKind::U16 ? 2 : 4; }
 
-  LANCER_LANE size_t bytes() const {
+  LANCER_LANE size_t level_bytes(uint32_t level) const {
     const size_t texel = size_t(channels) * channel_bytes();
-    return blocks ? (size_t(blocks_across()) * blocks_along(height) << 2 * kBlockShift) * texel
-                  : size_t(width) * height * texel;
+    const uint32_t across = level_side(width, level), up = level_side(height, level);
+    return blocks ? (size_t(blocks_along(across)) * blocks_along(up) << 2 * kBlockShift) * texel : size_t(across) * up * texel;
   }
+  // Returns where the texels of a level begin; those of level `levels` would follow the last.
+  LANCER_LANE size_t level_offset(uint32_t level) const {
+    size_t offset = 0;
+    for (uint32_t i = 0; i < level; ++i)
+      offset += level_bytes(i);
+    return offset;
+  }
+  LANCER_LANE size_t bytes() const { return level_offset(levels); }
 };
 
 } // namespace lancer

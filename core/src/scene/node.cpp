@@ -43,6 +43,41 @@ Schedule Program::schedule(std::span<const Parameter> parameters) const {
   return result;
 }
 
+namespace {
+
+// Whether the values of a kind change from pixel to pixel as far as levels of images go; see nodes/changes.h.
+bool changes(const Node &node) {
+  switch (node.kind) {
+  case NodeKind::Coordinate:
+  case NodeKind::Attribute:
+  case NodeKind::Mapping:
+  case NodeKind::VectorMath:
+  case NodeKind::Separate:
+  case NodeKind::Combine:
+  case NodeKind::Grey:
+  case NodeKind::Transform:
+    return true;
+  default:
+    return false;
+  }
+}
+
+} // namespace
+
+void Program::number_changes() {
+  std::vector<bool> needed(nodes.size());
+  for (size_t i = nodes.size(); i-- > 0;) {
+    Node &node = nodes[i];
+    mipmapped |= node.mipmapped;
+    const bool moves = needed[i] && !node.steady && changes(node);
+    if (moves)
+      node.changes = int32_t(nodes.size() + 2 * changing++);
+    if (moves || node.mipmapped)
+      for (const Parameter &input : node.inputs)
+        mark(input, needed);
+  }
+}
+
 bool looks_around(uint32_t kind) { return kind == NodeKind::Occlusion || kind == NodeKind::Bevel || kind == NodeKind::Raycast; }
 
 bool asks_no_place(uint32_t kind) {

@@ -27,6 +27,9 @@ struct Node {
   uint32_t name = 0;    // index into Description::attribute_names; 0 is "", kUndisplaced is outside the list
   uint32_t tangent = 0; // index of the name of the tangents of this UV map
   uint32_t heights = 0; // BUMP: index of its schedule in Program::heights
+  int32_t changes = -1; // of its value over a pixel: the number of the first of two values that hold them; -1: not needed
+  bool steady = false;    // its value is taken as constant over a pixel
+  bool mipmapped = false; // IMAGE, ENVIRONMENT: some of its images have levels
   Parameter inputs[5];
   float matrix[12] = {};
 };
@@ -42,7 +45,13 @@ struct Program {
   std::vector<Schedule> heights; // of each BUMP: the nodes among [first, this) that its height depends on
   bool asks_light_path = false;  // whether a node reads the light path
   bool looks_around = false;     // whether a node sends rays
+  bool mipmapped = false;        // whether a node reads levels of images
+  size_t changing = 0;           // number of nodes whose changes are needed
 
+  // Returns the number of values of a run: those of all nodes, and two changes of each that needs them.
+  size_t value_count() const { return nodes.size() + 2 * changing; }
+  // Numbers the changes that images with levels need; to be called when all nodes are there.
+  void number_changes();
   // Returns the nodes that the parameters depend on, directly or indirectly, in order of evaluation, without the height nodes
   // of a BUMP.
   Schedule schedule(std::span<const Parameter> parameters) const;

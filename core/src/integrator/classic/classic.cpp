@@ -22,7 +22,7 @@ glm::vec3 ambient_light(const Scene &scene, const Camera &camera) {
   if (!environment.varies())
     return environment.constant();
   // Take the mean of the six axis directions, which is precise enough for the rough model of ambient light.
-  std::vector<glm::vec4> values(scene.world.program.nodes.size());
+  std::vector<glm::vec4> values(scene.world.program.value_count());
   glm::vec3 sum(0.0f);
   for (int axis = 0; axis < 3; ++axis) {
     glm::dvec3 wi(0.0);
@@ -40,7 +40,7 @@ ClassicIntegrator::ClassicIntegrator(const Scene &scene, const Camera &camera, c
     : scene_(scene), camera_(camera), settings_(settings), generator_(camera, settings), light_(scene, &camera),
       shadows_(scene, camera, settings), passes_(settings), queues_(scene), surfaces_(scene, camera, settings),
       kernel_(classic_kernel()), ambient_(ambient_light(scene, camera)), only_combined_(settings.passes == bit(Pass::Combined)),
-      sky_values_(scene.world.program.nodes.size()) {}
+      sky_values_(scene.world.program.value_count()) {}
 
 void ClassicIntegrator::run(std::span<const SampleAddress> addresses, std::span<SampleResult> results,
                             std::vector<PathVertex> *trace) {

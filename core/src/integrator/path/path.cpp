@@ -4,6 +4,7 @@
 #include "simd/vectors.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace lancer {
 
@@ -47,6 +48,10 @@ void PathIntegrator::start(std::span<const SampleAddress> addresses, std::span<S
   queue_.from.resize(queue_.rays.size());
   for (size_t i = 0; i < queue_.rays.size(); ++i)
     queue_.from[i].p = queue_.rays[i].o;
+  for (size_t i = 0; i < queue_.rays.size() && scene_.features & kFeatureMipmaps; ++i) {
+    queue_.paths[i].width = float(cone_.base);
+    queue_.paths[i].spread = float(cone_.spread * relative_spread(seen_by_, queue_.rays[i].d));
+  }
   counts_.camera += queue_.paths.size();
 }
 
@@ -112,7 +117,7 @@ void PathIntegrator::add_environment() {
     const auto now = std::span(missed_).subspan(first, std::min<size_t>(kBlockLanes, missed_.size() - first));
     for (uint32_t lane = 0; lane < now.size(); ++lane) {
       const Path &path = queue_.paths[now[lane]];
-      met_.add_miss(lane, queue_.rays[now[lane]].d, path.light_path(0.0),
+      met_.add_miss(lane, queue_.rays[now[lane]].d, path.light_path(0.0, 0.0),
                     path.kinds == RayKind::Camera ? &queue_.from[now[lane]].p : nullptr);
     }
     met_.look_at_sky(uint32_t(now.size()));
@@ -156,7 +161,7 @@ void PathIntegrator::shade_block() {
     const Path &path = path_of(lane);
     const double unit = surface_.surfaces().length[lane], t = surface_.hit(lane).t;
     View view = surface_.view(lane, path.length + t * unit,
-                              path.light_path((t - surface_.ray(lane).tmin) * unit / scene_.normalisation.scale));
+                              path.light_path((t - surface_.ray(lane).tmin) * unit / scene_.normalisation.scale, t * unit));
     view.pixel = path.sampler.pixel();
     view.sample = path.sampler.sample();
     view.dimension = path.nodes_dimension();
@@ -225,11 +230,23 @@ void PathIntegrator::light() {
     if (splitting_)
       numbers_.draw(kLightNumbers, surface_.count(), splitting_, count, number);
     light_.ask(asking, surface_.surfaces(), surface_.lobes(), numbers_.numbers,
-               [&](uint32_t lane) { return path_of(lane).asking_path(); });
+               [&](uint32_t lane) { return asking_path(lane); });
     light_.light({surface_.surfaces(), surface_.lobes(), beta_, lights_});
     each_lane(asking & light_.lit().lit & ~nothing_, [&](uint32_t lane) { send_shadow(lane); });
     asking &= splitting_;
   }
+}
+
+// Returns what nodes of a light and of surfaces before it read of a light sample of a lane. The ray spreads like the widest lobe:
+// where a narrow one gives most of the light, the path's own rays find it.
+LightPath<float> PathIntegrator::asking_path(uint32_t lane) const {
+  const Path &path = path_of(lane);
+  LightPath<float> asking = path.asking_path();
+  if (!surface_.lobes().spreads)
+    return asking;
+  asking.width = path.width + float(surface_.distance(lane)) * path.spread;
+  asking.spread = std::max(path.spread, std::sqrt(surface_.lobes().widest[lane]));
+  return asking;
 }
 
 // Queues a lane's light sample with its shadow ray.
@@ -241,7 +258,7 @@ void PathIntegrator::send_shadow(uint32_t lane) {
     return shadow_.push_lit(waiting, contribution);
   Ray &ray = shadow_.push(waiting, contribution, path.passed_through);
   if (shadow_.asks_light_path())
-    shadow_.set_light_path(path.asking_path());
+    shadow_.set_light_path(asking_path(lane));
   write_shadow_ray(scene_, surface_, lane, light_.samples(), light_.lit(), ray);
 }
 

@@ -22,7 +22,8 @@ void PathIntegrator::enter(uint32_t lane, uint32_t branch) {
     return;
   Path &next = branch_off(below_, lane, branch);
   next.enter(beta, (block.below_variant[lane] & kDimmedExit) != 0);
-  next.length += surface_.distance(lane);
+  next.go(surface_.distance(lane));
+  next.spread = 0.0f;
   film_.set_shares(path, next, block.share, lane);
   const glm::vec3 outwards = get(surface_.surfaces().ng, lane), ng = get(surface_.lobes().ng, lane);
   const Hit &hit = surface_.hit(lane);

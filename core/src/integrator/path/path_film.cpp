@@ -183,7 +183,7 @@ void PathFilm::pass_absent(Path &path, const Ray &ray, HitStage &stage, size_t n
         shader_.shade(surface,
                       {.wo = glm::vec3(-glm::normalize(ray.d)),
                        .footprint = float(cone_.base + (path.length + met.t * unit) * cone_.spread),
-                       .path = path.light_path((met.t - ray.tmin) * unit / scene_.normalisation.scale)},
+                       .path = path.light_path((met.t - ray.tmin) * unit / scene_.normalisation.scale, met.t * unit)},
                       absent_);
         record(path, surface, *absent_.material, absent_.bsdf.ns, absent_.opacity(), met.t);
       }

@@ -4,6 +4,7 @@
 #include "simd/vectors.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace lancer {
@@ -74,7 +75,7 @@ void PathIntegrator::pass_straight(uint32_t lane) {
     path.beta *= weight / surface_.lobes().pass[lane];
   }
   film_.pass_on(path, hit.t);
-  path.length += surface_.distance(lane);
+  path.go(surface_.distance(lane));
   path.count_crossings(1, settings_.transparent_bounces);
   next_.paths.push_back(path);
   next_.from.push_back(from);
@@ -166,7 +167,9 @@ void PathIntegrator::scatter(uint32_t lane, uint32_t branch) {
   next.scatter(beta, scatter_.kind(lane), block.diffuse >> lane & 1, block.transmitted >> lane & 1, block.pdf[lane] == 0.0);
   next.in_view = path.in_view && film_.stays_in_view(block, lane);
   next.sharp = path.sharp && (block.pdf[lane] == 0.0 || block.pdf[lane] >= kSharpDensity);
-  next.length += surface_.distance(lane);
+  next.go(surface_.distance(lane));
+  if (surface_.lobes().spreads)
+    next.spread = std::max(next.spread, std::sqrt(block.mean_alpha2[lane]));
   film_.set_shares(path, next, block.share, lane);
   next_.from.push_back({get(surface_.surfaces().p, lane), get(surface_.lobes().ns, lane),
                         (surface_.lobes().transmits >> lane & 1) != 0, block.pdf[lane], 0.0});

@@ -31,6 +31,9 @@ struct Path {
   bool dimmed = false;        // Principled of Blender 3 has sent it below, whose exit Fresnel's weight dims
   bool after_diffuse = false; // a diffuse lobe has scattered the path
   double length = 0.0;        // of the whole path, normalised units; set by PATH
+  // What a pixel sees, as in Cycles: its width where the ray starts, and its growth along the ray. Set by PATH where images have
+  // mipmaps.
+  float width = 0.0f, spread = 0.0f;
 
   // Returns the number of surfaces that the path may still pass straight through: up to limit on the whole path, and at least
   // one unless the path is at its last surface. After these, the path ends at the next surface and gets only the light that
@@ -96,8 +99,19 @@ struct Path {
   // Whether the ray shows a light or an environment that is hidden from some kinds of rays. Diffuse transmission is of two
   // kinds.
   bool shows_light(uint32_t hidden_from) const { return !((kinds | (story.kinds & RayKind::Diffuse)) & hidden_from); }
-  // Returns the Light Path values for nodes. ray_length: of the ray, from its start, in the user's units.
-  LightPath<float> light_path(double ray_length) const { return story.told(float(ray_length), scatterings, passed_through); }
+  // Goes on by this distance along the ray, in normalised units.
+  void go(double distance) {
+    length += distance;
+    width += float(distance) * spread;
+  }
+  // Returns the Light Path values for nodes at this distance along the ray, in normalised units. ray_length: of the ray, from its
+  // start, in the user's units.
+  LightPath<float> light_path(double ray_length, double distance) const {
+    LightPath<float> told = story.told(float(ray_length), scatterings, passed_through);
+    told.width = width + float(distance) * spread;
+    told.spread = spread;
+    return told;
+  }
   // Returns the Light Path values for a light sample at a vertex, which counts as a scattering, as in Cycles.
   LightPath<float> asking_path() const {
     LightPath<float> asking = story.told(0.0f, scatterings + 1, passed_through);

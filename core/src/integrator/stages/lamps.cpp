@@ -10,7 +10,7 @@ namespace {
 size_t most_nodes_of(const LampShaders &shaders) {
   size_t most = 0;
   for (const LampShader &shader : shaders.of)
-    most = std::max(most, shader.program.nodes.size());
+    most = std::max(most, shader.program.value_count());
   return most;
 }
 

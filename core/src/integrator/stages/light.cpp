@@ -173,6 +173,12 @@ void LightStage::sample_faces(const Doubles (&p)[3]) {
   kernel_.sample_faces(faces_);
 }
 
+// Moves the end of a ray from a vertex to the sampled point at this distance.
+void LightStage::reach(LightPath<float> &path, double distance) const {
+  path.length = float(distance / scene_.normalisation.scale);
+  path.width += float(distance) * path.spread;
+}
+
 glm::vec3 LightStage::face_emission(uint32_t lane, LightPath<float> path) {
   Hit hit;
   hit.instance = emitter_of(lane).instance();
@@ -180,7 +186,7 @@ glm::vec3 LightStage::face_emission(uint32_t lane, LightPath<float> path) {
   hit.u = faces_.weights[0][lane];
   hit.v = faces_.weights[1][lane];
   const Surface surface = surface_at(scene_.geometry, scene_.slots, Ray{}, hit);
-  path.length = float(glm::length(surface.p - get(faces_.p, lane)) / scene_.normalisation.scale);
+  reach(path, glm::length(surface.p - get(faces_.p, lane)));
   return emission_(surface, glm::vec3(-get(faces_.wi, lane)), path);
 }
 
@@ -202,7 +208,7 @@ void LightStage::sample_shape(uint32_t lane, const Doubles (&p)[3], const Vertex
       scene_.geometry, scene_.slots, from, {numbers.of[kVertexLight][lane], numbers.of[kVertexLight + 1][lane]}, surface);
   if (!(light.pdf > 0.0))
     return;
-  path.length = float(glm::length(surface.p - from) / scene_.normalisation.scale);
+  reach(path, glm::length(surface.p - from));
   put(light.wi, samples_.wi, lane);
   put(light.target, samples_.target, lane);
   put(emission_(surface, glm::vec3(-light.wi), path), samples_.radiance, lane);
@@ -232,7 +238,7 @@ void LightStage::sample_sky(const VertexNumbers &numbers, uint32_t transmits) {
   each_lane(skies_, [&](uint32_t lane) { put(sky_.radiance(lane), samples_.radiance, lane); });
 }
 
-SkyStage::SkyStage(const Scene &scene, const Camera *camera) : scene_(scene), values_(scene.world.program.nodes.size()) {
+SkyStage::SkyStage(const Scene &scene, const Camera *camera) : scene_(scene), values_(scene.world.program.value_count()) {
   if (scene.lights.environment().is_light())
     for (const bool transmits : {false, true})
       maps_[transmits] = scene.lights.environment().table(transmits);

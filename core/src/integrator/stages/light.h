@@ -154,6 +154,7 @@ public:
     each_lane(skies_, [&](uint32_t lane) {
       LightPath<float> of_lane = path(lane);
       of_lane.length = std::numeric_limits<float>::max();
+      of_lane.width = of_lane.spread = std::min(of_lane.spread, scene_.lights.environment().finest());
       sky_.set_path(lane, of_lane, nullptr);
     });
     sample_sky(numbers, lobes.transmits);
@@ -183,6 +184,7 @@ private:
     store_face(lane, emission_varies(material) ? face_emission(lane, path(lane)) : material.emission.value);
   }
   void store_face(uint32_t lane, const glm::vec3 &radiance);
+  void reach(LightPath<float> &path, double distance) const;
   glm::vec3 face_emission(uint32_t lane, LightPath<float> path);
   void sample_shape(uint32_t lane, const Doubles (&p)[3], const VertexNumbers &numbers, LightPath<float> path);
   void sample_sky(const VertexNumbers &numbers, uint32_t transmits);

@@ -88,6 +88,7 @@ void MetLights::add_miss(uint32_t lane, const glm::dvec3 &d, LightPath<float> pa
   // A ray that hits nothing has one scattering more in its depth, as in Cycles, and no end.
   path.depth += 1.0f;
   path.length = std::numeric_limits<float>::max();
+  path.width = path.spread = eye ? path.spread : std::min(path.spread, scene_.lights.environment().finest());
   sky_.set_path(lane, path, eye);
 }
 

@@ -16,6 +16,7 @@ struct alignas(64) ScatterBlock {
   Floats wi[3], beta[3];
   Floats pdf_scattered; // of wi among scattered paths, 0: a single direction
   Floats alpha2;        // alpha_x alpha_y of the sampled lobe, 0 for a single direction
+  Floats mean_alpha2;   // see BsdfSample, where LobeBlock::spreads is set
   Floats share[2][3];   // diffuse and glossy share of the sample's weight, where shares are wanted
   // Parameters of walks below the surface, in lanes that enter it: see BsdfSample.
   Floats below_color[3], below_radius[3], below_g, below_ior;

@@ -28,6 +28,8 @@ void scatter(const ScatteringVertices &vertices, ScatterBlock &next) {
     store(next.pdf + first, select(sample.delta, D(0.0), widen(sample.pdf) * scatters));
     store(next.pdf_scattered + first, select(sample.delta, F(0.0f), sample.pdf));
     store(next.alpha2 + first, sample.alpha2);
+    if (lobes.spreads)
+      store(next.mean_alpha2 + first, sample.mean_alpha2);
     for (int component = 0; component < 2 && lobes.shares; ++component)
       store3(next.share[component], first, sample.share[component]);
     next.sampled |= placed_bits((!black(sample.weight)) & (sample.pdf > F(0.0f)), first);

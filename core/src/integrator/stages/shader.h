@@ -23,7 +23,7 @@ class Shader {
 public:
   // camera may be null.
   Shader(const Scene &scene, const Camera *camera)
-      : scene_(scene), nodes_(scene.node_scene(camera), most_nodes(scene.materials)) {}
+      : scene_(scene), nodes_(scene.node_scene(camera), most_values(scene.materials)) {}
 
   // seen_by_camera: see Bsdf.
   void shade(const Surface &surface, const View &view, Shaded &result, bool seen_by_camera = true);

@@ -60,7 +60,9 @@ bool ShadowStage::counts(size_t ray, const Hit &hit) {
   if (!known && waiting_[ray].passed + crossings_.count(ray) >= deepest_)
     return true;
   LightPath<float> path = ray < light_paths_.size() ? light_paths_[ray] : shadow_path();
-  path.length = float(hit.t * glm::length(rays_[ray].d) / scene_.normalisation.scale);
+  const double distance = hit.t * glm::length(rays_[ray].d);
+  path.length = float(distance / scene_.normalisation.scale);
+  path.width += float(distance) * path.spread;
   const glm::vec3 transmittance = shader_.transmittance(rays_[ray], hit, path);
   if (transmittance == glm::vec3(0.0f))
     return true;

@@ -26,7 +26,9 @@ public:
         deepest_(settings.transparent_shadows), any_clear_(settings.all_features() || (scene.features & kFeatureTransparency)),
         asks_light_path_(std::ranges::any_of(
             scene.materials,
-            [](const Material &m) { return m.program.asks_light_path && (m.transmittance.varies() || m.has_sheets); })),
+            [](const Material &m) {
+              return (m.program.asks_light_path || m.program.mipmapped) && (m.transmittance.varies() || m.has_sheets);
+            })),
         crossings_(scene.geometry) {}
 
   // Queues a contribution; trace() multiplies it by the ray's transmittance. passed: the number of surfaces that the path has

@@ -26,9 +26,10 @@ MeansWanted means_wanted(const IntegratorSettings &settings) {
 
 SurfaceStage::SurfaceStage(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
     : kernel_(surface_kernel()), node_kernel_(node_kernel()), scene_(scene), cone_(camera), wanted_(means_wanted(settings)),
-      values_(most_nodes(scene.materials)), storage_(kernel_.lobes_bytes / sizeof(Bytes) + 1) {
+      values_(most_values(scene.materials)), storage_(kernel_.lobes_bytes / sizeof(Bytes) + 1) {
   materials_.values = reinterpret_cast<const float(*)[4][kBlockLanes]>(values_.data());
   materials_.shares = wanted_.shown;
+  materials_.spreads = scene.features & kFeatureMipmaps;
   lobes_.storage = reinterpret_cast<std::byte *>(storage_.data());
   nodes_.scene = scene.node_scene(&camera);
 }
@@ -143,7 +144,7 @@ void SurfaceStage::place_nodes(const Material &material, std::span<const View> v
     nodes_.bary[0][lane] = met.u;
     nodes_.bary[1][lane] = met.v;
     nodes_.footprint[lane] = views[lane].footprint;
-    if (material.program.asks_light_path)
+    if (material.program.asks_light_path || material.program.mipmapped)
       put(views[lane].path, nodes_, lane);
   }
   const bool looks = material.program.looks_around && looking_.rays;

@@ -51,6 +51,7 @@ struct alignas(64) MaterialBlock {
   Floats pixel;                                    // width of a pixel there, user's units; by place_path()
   Words key;                                       // of the numbers of estimates; by set_key()
   bool shares = false;                             // diffuse and glossy shares of light are wanted
+  bool spreads = false;                            // the spread of rays is wanted, for images with mipmaps
 };
 
 // The lobes, with normals and emission on the viewer's side; by build_lobes().
@@ -67,6 +68,8 @@ struct alignas(64) LobeBlock {
   uint32_t enters = 0;    // some light enters the surface, to walk below it
   uint32_t sheets = 0;    // some light passes a smooth sheet straight
   bool shares = false;    // as in MaterialBlock
+  bool spreads = false;   // as in MaterialBlock
+  Floats widest;          // largest alpha_x alpha_y of a lobe that scatters into more than single directions, where wanted
 };
 
 // Means over lobes that passes ask for.

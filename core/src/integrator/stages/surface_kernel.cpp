@@ -68,14 +68,25 @@ LANCER_LANE F share_passing(const MaterialBlock &materials, int first, const Bsd
   return select(passes, through / (through + select(some(materials.ends, first), zero, mean(bsdf.albedo()))), zero);
 }
 
+LANCER_LANE F widest_alpha2(const Bsdf<F> &bsdf) {
+  F widest(0.0f);
+  for (int i = 0; i < bsdf.count; ++i) {
+    const Lobe<F> &lobe = bsdf.lobes[i];
+    widest = select((lobe.probability > F(0.0f)) & !lobe.delta, max(widest, alpha2_of(lobe)), widest);
+  }
+  return widest;
+}
+
 void build(const SurfaceBlock &surfaces, const MaterialBlock &materials, LobeBlock &lobes) {
   lobes.transmits = lobes.scatters = lobes.enters = lobes.sheets = 0;
   lobes.shares = materials.shares;
+  lobes.spreads = materials.spreads;
   for (int first = 0; first < kBlockLanes; first += kLanes) {
     if (!(lobes.used >> first))
       return;
     Bsdf<F> &bsdf = *new (&lobes_of(lobes, first)) Bsdf<F>;
     bsdf.shares = materials.shares;
+    bsdf.spreads = materials.spreads;
     find_lobes<F>(materials.material + first, NodeValues{materials, first}, some(materials.holes, first),
                   load3(surfaces.wo, first), load3(surfaces.ns, first), load3(surfaces.ng, first), bsdf,
                   {.seen_by_camera = some(materials.seen_by_camera, first),
@@ -96,6 +107,8 @@ void build(const SurfaceBlock &surfaces, const MaterialBlock &materials, LobeBlo
     }
     lobes.transmits |= placed_bits(bsdf.transmits, first);
     lobes.scatters |= placed_bits(bsdf.smooth, first);
+    if (materials.spreads)
+      store(lobes.widest + first, widest_alpha2(bsdf));
     if (materials.walks)
       lobes.enters |= placed_bits(enters(bsdf), first) & lobes.used;
   }
