@@ -34,6 +34,7 @@ CONTROLS = (
     Controls("RenderSettings", ("resolution_x", "resolution_y", "resolution_percentage", "pixel_aspect_x", "pixel_aspect_y")),
     Controls("RenderSettings", ("use_border", "film_transparent", "threads_mode", "threads")),
     Controls("RenderSettings", ("use_simplify", "simplify_subdivision")),
+    Controls("RenderSettings", ("use_texture_cache", "use_auto_generate_texture_cache"), since=(5, 2)),
     Controls("CyclesRenderSettings", ("film_transparent_glass", "film_transparent_roughness")),
     Controls("CyclesRenderSettings", ("dicing_rate", "max_subdivisions", "dicing_camera", "offscreen_dicing_scale")),
     Controls("CyclesRenderSettings", ("feature_set",), before=(5, 0)),

@@ -246,7 +246,7 @@ class NodeGraph(NodeBuilder):
 
     def _takes_as_steady(self, site):
         """Whether Cycles takes the values of a node as constant over a pixel where it chooses the level of an image."""
-        return getattr(self.images, "texture_cache", None) is not None and site.node.type not in _CHANGING
+        return self.images is not None and self.images.texture_cache is not None and site.node.type not in _CHANGING
 
     def _look_ahead(self, site, output):
         """Compute values along chains of nodes that are longer than calls can nest, starting at the far end."""

@@ -117,6 +117,7 @@ class NoPictures:
     """A stand-in for Images that reads none, for panels and for a lamp alone."""
 
     list = ()
+    texture_cache = None
 
     def numbers(self, image, user, tell, in_memory=False):
         return 0, 1

@@ -67,6 +67,10 @@ class _Asked:
     def list(self):
         return self._images.list
 
+    @property
+    def texture_cache(self):
+        return self._images.texture_cache
+
     def numbers(self, image, user, tell, in_memory=False):
         found = self._images.numbers(image, user, tell, in_memory)
         self.pictures.add(identity(image))

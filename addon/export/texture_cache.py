@@ -8,7 +8,7 @@ import bpy
 
 # The folder beside an image for files of the cache, and the end of their names.
 _FOLDER = "blender_tx"
-_END = re.compile(r"\.0-[0-9a-f]{32}\.tx")
+_END = re.compile(r"\.0-[0-9A-Fa-f]{32}\.tx")
 
 
 class TextureCache(NamedTuple):

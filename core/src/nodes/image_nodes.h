@@ -13,9 +13,7 @@ namespace {
 constexpr uint32_t kTileOfEachSide = 512; // flag of a box
 
 // A place in an image, and the squares of its coordinates' changes over a pixel.
-template <class F> struct Place {
-  F u, v, u2 = F(0.0f), v2 = F(0.0f);
-};
+template <class F> struct Place { F u, v, u2 = F(0.0f), v2 = F(0.0f); };
 template <class F> LANCER_LANE Place<F> select(const MaskOf<F> &m, const Place<F> &a, const Place<F> &b) {
   return {select(m, a.u, b.u), select(m, a.v, b.v), select(m, a.u2, b.u2), select(m, a.v2, b.v2)};
 }
@@ -82,7 +80,8 @@ template <class F> Value<F> look_up_tile(const Inputs<F> &in, const Site<F> &sit
       ++k;
     return k;
   });
-  return look_up_each(in, site, select(known, number, U(in.node.image_count)), {place.u - column, place.v - row, place.u2, place.v2});
+  return look_up_each(in, site, select(known, number, U(in.node.image_count)),
+                      {place.u - column, place.v - row, place.u2, place.v2});
 }
 
 // Returns longitude and latitude of a point in the box -1 ... 1.
@@ -195,9 +194,8 @@ template <class F> Value<F> image_node(const Program &program, const Inputs<F> &
   const Image &first = picture(in, site, 0);
   if (in.node.option == ImageProjection::Box)
     return box(program, in, site, first);
-  const Place<F> place = in.node.mipmapped
-                             ? squared(projected(in.node.option, ChangingInputs<F>{program, in, in.node}[0]))
-                             : projected(in.node.option, in[0]);
+  const Place<F> place = in.node.mipmapped ? squared(projected(in.node.option, ChangingInputs<F>{program, in, in.node}[0]))
+                                           : projected(in.node.option, in[0]);
   return first.tile != 0 ? look_up_tile(in, site, place) : look_up(in, site, first, place);
 }
 

@@ -231,6 +231,19 @@ PixelCone::PixelCone(const Camera &camera) {
   spread = change_over_pixel(here.d, right.d, above.d);
 }
 
+double pixel_spread(const Camera &camera, const glm::dvec3 &d) {
+  if (!camera.is_panorama())
+    return PixelCone(camera).spread * relative_spread(camera, d);
+  const glm::dvec3 here = glm::normalize(glm::transpose(camera.to_world.linear) * d);
+  const glm::dvec2 place = panorama_place(camera, here);
+  const glm::dvec3 right = panorama_direction(camera, place + glm::dvec2((camera.right - camera.left) / camera.width, 0.0));
+  const glm::dvec3 above = panorama_direction(camera, place + glm::dvec2(0.0, (camera.top - camera.bottom) / camera.height));
+  // Beyond the edge of the field of view there is no direction.
+  if (right == glm::dvec3(0.0) || above == glm::dvec3(0.0))
+    return 0.0;
+  return change_over_pixel(here, right, above);
+}
+
 double relative_spread(const Camera &camera, const glm::dvec3 &d) {
   const glm::dvec3 local = glm::transpose(camera.to_world.linear) * d;
   if (camera.kind != CameraKind::Perspective || !(local.z < 0.0))

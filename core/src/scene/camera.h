@@ -67,6 +67,9 @@ struct PixelCone {
 // Returns the spread of a perspective camera's pixel in direction d, relative to that in the middle; 1 for other cameras.
 double relative_spread(const Camera &camera, const glm::dvec3 &d);
 
+// Returns the mean change of a ray's direction d over a pixel, as Cycles measures it; 0 for an orthographic camera.
+double pixel_spread(const Camera &camera, const glm::dvec3 &d);
+
 // Panoramic projections between a place in the whole panorama, 0 ... 1, and a direction. Local frame: -z forwards, y up.
 
 // Returns a unit direction; zero outside the field of view.

@@ -49,8 +49,8 @@ void PathIntegrator::start(std::span<const SampleAddress> addresses, std::span<S
   for (size_t i = 0; i < queue_.rays.size(); ++i)
     queue_.from[i].p = queue_.rays[i].o;
   for (size_t i = 0; i < queue_.rays.size() && scene_.features & kFeatureMipmaps; ++i) {
-    queue_.paths[i].width = float(cone_.base);
-    queue_.paths[i].spread = float(cone_.spread * relative_spread(seen_by_, queue_.rays[i].d));
+    queue_.paths[i].width = float(width_at_eye_);
+    queue_.paths[i].spread = float(pixel_spread(seen_by_, queue_.rays[i].d));
   }
   counts_.camera += queue_.paths.size();
 }
@@ -238,14 +238,14 @@ void PathIntegrator::light() {
 }
 
 // Returns what nodes of a light and of surfaces before it read of a light sample of a lane. The ray spreads like the widest lobe:
-// where a narrow one gives most of the light, the path's own rays find it.
+// where a narrow one gives most of the light, the path's own rays find it. From the end of a walk it does not spread, as in Cycles.
 LightPath<float> PathIntegrator::asking_path(uint32_t lane) const {
   const Path &path = path_of(lane);
   LightPath<float> asking = path.asking_path();
   if (!surface_.lobes().spreads)
     return asking;
   asking.width = path.width + float(surface_.distance(lane)) * path.spread;
-  asking.spread = std::max(path.spread, std::sqrt(surface_.lobes().widest[lane]));
+  asking.spread = path.leaving ? path.spread : std::max(path.spread, std::sqrt(surface_.lobes().widest[lane]));
   return asking;
 }
 

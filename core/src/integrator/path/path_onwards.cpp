@@ -168,7 +168,8 @@ void PathIntegrator::scatter(uint32_t lane, uint32_t branch) {
   next.in_view = path.in_view && film_.stays_in_view(block, lane);
   next.sharp = path.sharp && (block.pdf[lane] == 0.0 || block.pdf[lane] >= kSharpDensity);
   next.go(surface_.distance(lane));
-  if (surface_.lobes().spreads)
+  // As in Cycles, rays from the end of a walk do not spread.
+  if (surface_.lobes().spreads && !path.leaving)
     next.spread = std::max(next.spread, std::sqrt(block.mean_alpha2[lane]));
   film_.set_shares(path, next, block.share, lane);
   next_.from.push_back({get(surface_.surfaces().p, lane), get(surface_.lobes().ns, lane),
