@@ -44,7 +44,7 @@ _CALLS = {
     "lancer_scene_set_object_infos": (_u64, _u32, _Array),
     "lancer_scene_add_object_attribute": (_u64, c_char_p, _u32, _Array),
     "lancer_scene_add_image": (_u64, POINTER(Image)),
-    "lancer_make_mipmaps": (POINTER(Image), c_void_p),
+    "lancer_make_mipmaps": (POINTER(Image), _Array),
     "lancer_scene_set_world": (_u64, POINTER(World)),
     "lancer_scene_commit": (_u64, _u32, _u32),
     "lancer_scene_wait": (_u64, _u32),

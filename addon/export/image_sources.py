@@ -11,8 +11,8 @@ from ..messages.severity import Severity
 from .colorspace import loaded, stored
 from .layered_exr import combined_pass, has_layers, shown_by_cycles
 from .missing import HAS_TEXEL, missing
-from .texture_cache import is_cached
 from .texels import mid_grey, read_texels
+from .texture_cache import is_cached
 from .tiles import is_generated, path_of_tile, regenerated, shows_memory
 
 _SHOWS_STROKES = bpy.app.version >= (5, 2)  # older Cycles shows the file of an image with unsaved strokes

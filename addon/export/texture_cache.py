@@ -6,6 +6,8 @@ from typing import NamedTuple
 
 import bpy
 
+from ..host import main_thread
+
 # The folder beside an image for files of the cache, and the end of their names.
 _FOLDER = "blender_tx"
 _END = re.compile(r"\.0-[0-9A-Fa-f]{32}\.tx")
@@ -23,7 +25,8 @@ def texture_cache(scene):
     render = scene.render
     if not getattr(render, "use_texture_cache", False):
         return None
-    folder = bpy.context.preferences.filepaths.texture_cache_directory
+    # Only the main thread may read the preferences.
+    folder = main_thread.run(lambda: bpy.context.preferences.filepaths.texture_cache_directory)
     return TextureCache(render.use_auto_generate_texture_cache, bpy.path.abspath(folder) if folder.startswith("//") else folder)
 
 
@@ -31,7 +34,9 @@ def is_cached(cache, path):
     """Whether Cycles reads an image's file from the cache, as far as the names and times of its files tell."""
     if cache is None or not os.path.isfile(path):
         return False
-    return cache.makes or any(_has_file(os.path.join(os.path.dirname(path), folder), path) for folder in (cache.folder, _FOLDER))
+    return cache.makes or any(
+        _has_file(os.path.join(os.path.dirname(path), folder), path) for folder in (cache.folder, _FOLDER)
+    )
 
 
 def _has_file(folder, path):

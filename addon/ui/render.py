@@ -327,6 +327,23 @@ class LANCER_RENDER_PT_threads(LancerRenderPanel, bpy.types.Panel):
         row.prop(render, "threads")
 
 
+class LANCER_RENDER_PT_texture_cache(LancerRenderPanel, bpy.types.Panel):
+    bl_label = "Texture Cache"
+    bl_parent_id = "LANCER_RENDER_PT_performance"
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and hasattr(context.scene.render, "use_texture_cache")
+
+    def draw_header(self, context):
+        self.layout.prop(context.scene.render, "use_texture_cache", text="")
+
+    def draw(self, context):
+        column = self._column()
+        column.active = context.scene.render.use_texture_cache
+        column.prop(context.scene.render, "use_auto_generate_texture_cache", text="Auto Generate")
+
+
 class LANCER_RENDER_PT_acceleration(LancerRenderPanel, bpy.types.Panel):
     bl_label = "Acceleration Structure"
     bl_parent_id = "LANCER_RENDER_PT_performance"
@@ -375,6 +392,7 @@ CLASSES = (
     LANCER_RENDER_PT_transparent,
     LANCER_RENDER_PT_performance,
     LANCER_RENDER_PT_threads,
+    LANCER_RENDER_PT_texture_cache,
     LANCER_RENDER_PT_acceleration,
     LANCER_RENDER_PT_performance_viewport,
     LANCER_RENDER_PT_final_render,

@@ -83,6 +83,7 @@ def test_every_call_with_a_handle_is_tried_here(raw):
         "lancer_probe_filter",
         "lancer_evaluate_node",
         "lancer_compute_sky",
+        "lancer_make_mipmaps",
         "lancer_part_describe",
         "lancer_session_create_joiner",
     }

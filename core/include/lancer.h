@@ -219,8 +219,8 @@ typedef struct lancer_image {
   uint32_t reserved;
 } lancer_image;
 
-/* Makes the levels of an image of ROWS whose alpha is not STRAIGHT with four channels. levels: level 1 and all smaller ones, one
- * after another, each [height][width][channels] of the image's kind. */
+/* Makes the levels of an image of ROWS. levels: level 1 and all smaller ones, one after another, each [height][width][channels]
+ * of the image's kind, with colour that is multiplied by alpha where alpha is STRAIGHT. */
 LANCER_API lancer_status lancer_make_mipmaps(const lancer_image *image, void *levels);
 
 /* ---- nodes ------------------------------------------------------------------------------------------------------ */

@@ -114,8 +114,8 @@ lancer_status lancer_make_mipmaps(const lancer_image *image, void *levels) {
     Description description;
     add_image(description, source);
     Image &made = description.images.back();
-    if (made.blocks || (made.alpha == AlphaMode::Straight && made.channels == 4))
-      bad_argument("image: levels are made of rows, whose colour is multiplied by alpha");
+    if (made.blocks)
+      bad_argument("image: levels are made of rows, not of blocks");
     make_mipmaps(made);
     std::memcpy(levels, made.texels.get() + made.level_offset(1), made.bytes() - made.level_offset(1));
     return LANCER_OK;

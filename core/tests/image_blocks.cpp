@@ -210,6 +210,7 @@ TEST(ImageBlocks, RefusesWhatCannotBeReadInPlace) {
   };
   EXPECT_EQ(refusal([](lancer_image &) {}), "");
   EXPECT_EQ(refusal([](lancer_image &image) { image.layout = 2; }), "image 'bad': layout 2 is not one of 0, 1");
+  EXPECT_EQ(refusal([](lancer_image &image) { image.mipmaps = 2; }), "image 'bad': mipmaps 2 is not one of 0, 1");
   const auto beside = reinterpret_cast<uintptr_t>(lines.data()) + 4;
   EXPECT_EQ(refusal([&](lancer_image &image) { image.texels = reinterpret_cast<const void *>(beside); }),
             "image 'bad': address of the blocks " + std::to_string(beside) + " is not a multiple of 64");

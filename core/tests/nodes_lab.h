@@ -123,9 +123,9 @@ public:
     context.surface = s;
     context.wo = wo;
     context.footprint = footprint;
-    std::vector<glm::vec4> values(nodes.size(), glm::vec4(NAN));
+    std::vector<glm::vec4> values(program.value_count(), glm::vec4(NAN));
     run(program, program.schedule(std::span(&last, 1)), context, values);
-    return values.back();
+    return values[nodes.size() - 1];
   }
 };
 

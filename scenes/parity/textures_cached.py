@@ -134,7 +134,9 @@ def _mapped(kind):
 
 def _maths(operation, *more):
     def where(nodes):
-        scaled = nodes.add("ShaderNodeVectorMath", _coordinates(nodes, "Object"), (0.3, 0.4, 0.5), props={"operation": "MULTIPLY"})
+        scaled = nodes.add(
+            "ShaderNodeVectorMath", _coordinates(nodes, "Object"), (0.3, 0.4, 0.5), props={"operation": "MULTIPLY"}
+        )
         return nodes.add("ShaderNodeVectorMath", scaled, *more, props={"operation": operation})
 
     return where
@@ -165,7 +167,7 @@ def _rotated(nodes):
 
 
 def _normal(nodes):
-    """Enlarged: where a side of the image does not change, single texels would show that normals differ in their last digits."""
+    """Enlarged, so that single texels do not show that normals differ in their last digits."""
     return nodes.add("ShaderNodeVectorMath", _coordinates(nodes, "Normal"), (5.0, 5.0, 5.0), props={"operation": "MULTIPLY"})
 
 

@@ -85,6 +85,19 @@ def _surface(name, material):
     return Case(name, _on(BALL, material), _on(SQUARE, material))
 
 
+def _with_levels(name, material):
+    """Return the case of a material whose picture has levels, of which a ray reads one."""
+
+    def on(number):
+        def change(snapshot):
+            texels = np.tile(checks().texels, (4, 4, 1))
+            return dataclasses.replace(_on(number, material)(snapshot), images=(Image("checks", texels, mipmaps=1),))
+
+        return change
+
+    return Case(name, on(BALL), on(SQUARE))
+
+
 def _objects(name, **columns):
     """Return the case of instances with other values in columns of their table."""
 
@@ -253,6 +266,7 @@ CASES = (
     _surface("half transparent", tiny.veiled(tiny.lambert(0.7), 0.5)),
     _surface("cut out by a picture", _CUT),
     _surface("picture as colour", _nodes((_UV, _PICTURE), color=NodeRef(1))),
+    _with_levels("picture with levels", _nodes((_UV, _PICTURE), color=NodeRef(1))),
     _surface("bump of a picture", _BUMP),
     _surface(
         "colour by nodes (layer weight)",

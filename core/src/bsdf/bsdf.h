@@ -72,7 +72,7 @@ template <class F> struct Bsdf {
   bool bump_correction = true;
   bool shares = true;   // samples carry their shares by component
   bool spreads = false; // samples carry the mean roughness of their direction
-  WordOf<F> key{0u};  // of the numbers of Huang's fibre, whose value is an estimate by numbers of its own
+  WordOf<F> key{0u};    // of the numbers of Huang's fibre, whose value is an estimate by numbers of its own
   int frame_count = 0;
   int count = 0;
   V emission{F(0.0f)}; // emission of layered lobes towards wo

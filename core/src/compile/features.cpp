@@ -211,7 +211,7 @@ std::string feature_names(const Features &features) {
                                      "cylinders",    "cones",     "point-lights", "spot-lights",     "sun-lights",
                                      "area-lights",  "emitters",  "environment",  "environment-map", "vertex-colors",
                                      "nodes",        "textures",  "displacement", "holdout",         "visibility",
-                                     "glass",        "portals",   "walks",       "mipmaps"};
+                                     "glass",        "portals",   "walks",        "mipmaps"};
   static_assert(std::size(shapes) == kLobeShapes);
   std::string text;
   const auto add = [&](const char *name) {

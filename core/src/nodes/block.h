@@ -36,9 +36,9 @@ struct alignas(64) LookingLanes {
 // The inputs of nodes in lanes. The caller sets the used lanes of every array that the kind of place needs; other lanes are not
 // read as input.
 //
-// Data that only LIGHT_PATH and images with mipmaps read may be missing. On a surface, the caller sets all arrays except eye: ns and ng are unit, on
-// the viewer's side; backfacing marks lanes where the surface's own normals are on the other side. For directions of the world
-// (surface is false), the caller sets p (the direction), ns = ng = wo = -p, and eye.
+// Data that only LIGHT_PATH and images with mipmaps read may be missing. On a surface, the caller sets all arrays except eye:
+// ns and ng are unit, on the viewer's side; backfacing marks lanes where the surface's own normals are on the other side. For
+// directions of the world (surface is false), the caller sets p (the direction), ns = ng = wo = -p, and eye.
 struct alignas(64) NodeBlock {
   NodeScene scene;
   const LookingLanes *looking = nullptr; // null: nodes that look around meet nothing

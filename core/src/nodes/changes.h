@@ -64,9 +64,7 @@ template <class F> Change<F> place_change(const Node &node, const Site<F> &site)
     case Coordinate::Reflection: {
       const Vector3<F> x = normalize(across(site.wo)), y = cross(site.wo, x);
       const bool mirrored = node.option == Coordinate::Reflection && site.surface;
-      const auto turned = [&](const Vector3<F> &d) {
-        return mirrored ? F(F(2.0f) * dot(site.ns, d)) * site.ns - d : d;
-      };
+      const auto turned = [&](const Vector3<F> &d) { return mirrored ? F(F(2.0f) * dot(site.ns, d)) * site.ns - d : d; };
       return {turned(site.path.spread * x), turned(site.path.spread * y)};
     }
     case Coordinate::Window: {

@@ -69,8 +69,6 @@ template <class F> struct Dual {
 } // namespace
 
 // Dual numbers have the conditions of their values.
-template <class F> struct LanesOf<Dual<F>> {
-  using Mask = MaskOf<F>;
-};
+template <class F> struct LanesOf<Dual<F>> { using Mask = MaskOf<F>; };
 
 } // namespace lancer

@@ -24,10 +24,10 @@ inline constexpr uint32_t kSkyTexels = 11;
 struct Node {
   uint32_t kind = 0, option = 0, flags = 0;
   uint32_t image = 0, image_count = 0, first = 0;
-  uint32_t name = 0;    // index into Description::attribute_names; 0 is "", kUndisplaced is outside the list
-  uint32_t tangent = 0; // index of the name of the tangents of this UV map
-  uint32_t heights = 0; // BUMP: index of its schedule in Program::heights
-  int32_t changes = -1; // of its value over a pixel: the number of the first of two values that hold them; -1: not needed
+  uint32_t name = 0;      // index into Description::attribute_names; 0 is "", kUndisplaced is outside the list
+  uint32_t tangent = 0;   // index of the name of the tangents of this UV map
+  uint32_t heights = 0;   // BUMP: index of its schedule in Program::heights
+  int32_t changes = -1;   // of its value over a pixel: the number of the first of two values that hold them; -1: not needed
   bool steady = false;    // its value is taken as constant over a pixel
   bool mipmapped = false; // IMAGE, ENVIRONMENT: some of its images have levels
   Parameter inputs[5];

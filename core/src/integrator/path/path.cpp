@@ -237,8 +237,9 @@ void PathIntegrator::light() {
   }
 }
 
-// Returns what nodes of a light and of surfaces before it read of a light sample of a lane. The ray spreads like the widest lobe:
-// where a narrow one gives most of the light, the path's own rays find it. From the end of a walk it does not spread, as in Cycles.
+// Returns what nodes of a light and of surfaces before it read of a light sample of a lane. The ray spreads like the widest
+// lobe: where a narrow one gives most of the light, the path's own rays find it. From the end of a walk it does not spread, as
+// in Cycles.
 LightPath<float> PathIntegrator::asking_path(uint32_t lane) const {
   const Path &path = path_of(lane);
   LightPath<float> asking = path.asking_path();

@@ -31,8 +31,8 @@ struct Path {
   bool dimmed = false;        // Principled of Blender 3 has sent it below, whose exit Fresnel's weight dims
   bool after_diffuse = false; // a diffuse lobe has scattered the path
   double length = 0.0;        // of the whole path, normalised units; set by PATH
-  // What a pixel sees, as in Cycles: its width where the ray starts, and its growth along the ray. Set by PATH where images have
-  // mipmaps.
+  // What a pixel sees, as in Cycles: its width where the ray starts, and its growth along the ray. Set by PATH where images
+  // have mipmaps.
   float width = 0.0f, spread = 0.0f;
 
   // Returns the number of surfaces that the path may still pass straight through: up to limit on the whole path, and at least
@@ -104,8 +104,8 @@ struct Path {
     length += distance;
     width += float(distance) * spread;
   }
-  // Returns the Light Path values for nodes at this distance along the ray, in normalised units. ray_length: of the ray, from its
-  // start, in the user's units.
+  // Returns the Light Path values for nodes at this distance along the ray, in normalised units. ray_length: of the ray, from
+  // its start, in the user's units.
   LightPath<float> light_path(double ray_length, double distance) const {
     LightPath<float> told = story.told(float(ray_length), scatterings, passed_through);
     told.width = width + float(distance) * spread;

@@ -24,11 +24,11 @@ public:
   ShadowStage(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
       : HitFilter(scene.transparent_instances.data()), scene_(scene), shader_(scene, &camera),
         deepest_(settings.transparent_shadows), any_clear_(settings.all_features() || (scene.features & kFeatureTransparency)),
-        asks_light_path_(std::ranges::any_of(
-            scene.materials,
-            [](const Material &m) {
-              return (m.program.asks_light_path || m.program.mipmapped) && (m.transmittance.varies() || m.has_sheets);
-            })),
+        asks_light_path_(std::ranges::any_of(scene.materials,
+                                             [](const Material &m) {
+                                               return (m.program.asks_light_path || m.program.mipmapped) &&
+                                                      (m.transmittance.varies() || m.has_sheets);
+                                             })),
         crossings_(scene.geometry) {}
 
   // Queues a contribution; trace() multiplies it by the ray's transmittance. passed: the number of surfaces that the path has

@@ -30,7 +30,8 @@ TexturePrefetch::Source TexturePrefetch::find(const Scene &scene, const Material
     const Node &source = nodes[size_t(node.inputs[0].node)];
     const Image &image = scene.images[node.image];
     // A prefetch brings no page of a file into memory.
-    if (source.kind == NodeKind::Coordinate && source.option == Coordinate::Uv && image.bytes() >= kLarge && !image.blocks && image.levels == 1)
+    if (source.kind == NodeKind::Coordinate && source.option == Coordinate::Uv && image.bytes() >= kLarge && !image.blocks &&
+        image.levels == 1)
       return {&image, source.name, static_cast<Extension>(node.flags & 0xf)};
   }
   return {};
