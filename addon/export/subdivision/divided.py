@@ -66,8 +66,12 @@ class _Divided:
         cage, poll = self._cage, self._poll
         if len(cage.corners) == 0:
             return MeshData(name=self._mesh.name, positions=self._positions)
+        most = most_triangles(len(cage.corners))
+        # The patches need memory before there are triangles.
+        if most == 0:
+            raise self._too_many(most)
         surface = self._surface()
-        found = self._tessellation(surface)
+        found = self._tessellation(surface, most)
         self._found, self._faces = found, np.repeat(np.arange(len(cage.starts) - 1), np.diff(cage.starts))
         at = found.patches[found.owners], found.uvs[found.owners]
         positions = surface.at(*at, poll).astype(np.float32)
@@ -92,20 +96,21 @@ class _Divided:
         normals = read(self._mesh.vertices, "normal", np.float32, 3)[self._cage.corners]
         return LinearPatches(self._cage.values[self._cage.corners], self._cage, normals)
 
-    def _tessellation(self, surface):
-        most = most_triangles()
+    def _tessellation(self, surface, most):
         try:
             table, quads, triangles = split_patches(surface, self._cage, self._rate, most, self._poll)
         except TooManyTrianglesError:
-            rate = (
-                f"{self._adaptive.rate:g} pixels" if self._adaptive.in_pixels else f"an edge length of {self._adaptive.rate:g}"
-            )
-            size = most * BYTES_OF_TRIANGLE / 2**30
-            raise LancerError(
-                f"object '{self._name}': adaptive subdivision by {rate} would make more than the {most} triangles for which "
-                f"the {size:.1f} GB of free memory suffice: raise the dicing rate, or lower Max Subdivisions"
-            ) from None
+            raise self._too_many(most) from None
         return tessellate(table, quads, triangles, self._cage, self._poll)
+
+    def _too_many(self, most):
+        rate = f"{self._adaptive.rate:g} pixels" if self._adaptive.in_pixels else f"an edge length of {self._adaptive.rate:g}"
+        size = most * BYTES_OF_TRIANGLE / 2**30
+        return LancerError(
+            f"object '{self._name}': adaptive subdivision by {rate} would make more than the {most} triangles for which "
+            f"the {size:.1f} GB of free memory beside its {len(self._cage.starts) - 1} faces suffice: raise the dicing rate, or "
+            "lower Max Subdivisions"
+        )
 
     def _normals(self, surface, at, positions, triangles, faces):
         """Return the normals as MeshData has them: of the limit surface, but flat faces have those of their triangles."""

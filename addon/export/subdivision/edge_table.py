@@ -33,6 +33,8 @@ class Rate:
         return lengths, np.nan_to_num(wanted, nan=0.0, posinf=0.0)
 
 
+# The edges that are measured at once.
+_AT_ONCE = 1 << 14
 # The columns of the table. Numbers of edges and vertices are below 2^31, or there is no memory for them.
 _COLUMNS = {
     "ends": (np.int32, (2,)),
@@ -110,6 +112,14 @@ class EdgeTable:
 
     def _estimated(self, patch, uvs):
         """Return the segments and the lengths of edges, and whether their halves differ by more than a segment."""
+        found = np.empty(len(patch), np.int64), np.empty(len(patch)), np.empty(len(patch), bool)
+        for first in range(0, len(patch), _AT_ONCE):
+            part = slice(first, first + _AT_ONCE)
+            for column, values in zip(found, self._estimated_part(patch[part], uvs[part]), strict=True):
+                column[part] = values
+        return found
+
+    def _estimated_part(self, patch, uvs):
         at = [
             self._rate.points(self._surface.at(patch, np.ascontiguousarray(place), self._poll))
             for place in (uvs[:, 0], 0.5 * (uvs[:, 0] + uvs[:, 1]), uvs[:, 1])

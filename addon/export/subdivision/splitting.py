@@ -63,6 +63,7 @@ class _Splitter:
 
     def run(self):
         quads, triangles = self._start, joined([], 3)
+        self._start = None
         while len(quads.patches) or len(triangles.patches):
             self._poll()
             quads, diagonal = self._split_quads(quads)
