@@ -108,8 +108,8 @@ class _Divided:
         size = most * BYTES_OF_TRIANGLE / 2**30
         return LancerError(
             f"object '{self._name}': adaptive subdivision by {rate} would make more than the {most} triangles for which "
-            f"the {size:.1f} GB of free memory beside its {len(self._cage.starts) - 1} faces suffice: raise the dicing rate, or "
-            "lower Max Subdivisions"
+            f"the {size:.1f} GB of free memory beside its {len(self._cage.starts) - 1} faces suffice: raise the dicing rate, "
+            "or lower Max Subdivisions"
         )
 
     def _normals(self, surface, at, positions, triangles, faces):
