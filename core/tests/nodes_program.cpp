@@ -93,7 +93,7 @@ TEST(NodesProgram, RefusalsNameMaterialNodeAndValue) {
   bad = node(LANCER_NODE_ENVIRONMENT, LANCER_ENVIRONMENT_CUBE);
   bad.image_count = 1;
   EXPECT_EQ(refusal(bad), "material 'Wood': node 1: 1 images for the 6 sides of a cube");
-  EXPECT_EQ(refusal(flagged(node(LANCER_NODE_IMAGE), 512)), "material 'Wood': node 1: flags 512 has bits beyond the last flag");
+  EXPECT_EQ(refusal(flagged(node(LANCER_NODE_IMAGE), 1024)), "material 'Wood': node 1: flags 1024 has bits beyond the last flag");
   EXPECT_NE(refusal(flagged(node(LANCER_NODE_BUMP), 8)), "");
   EXPECT_NE(refusal(flagged(node(LANCER_NODE_SEPARATE), 1)), "");
   bad = node(LANCER_NODE_BUMP);
