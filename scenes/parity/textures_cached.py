@@ -24,7 +24,9 @@ def _texels(side=512, seed=1, channels=4):
 
 
 def _file(name="Cached", pixels=None, colorspace="Non-Color"):
-    return images.from_file(name, _texels() if pixels is None else pixels, colorspace)
+    """Cycles takes a file of the cache for that of another image of the same name and second: sizes have names of their own."""
+    pixels = _texels() if pixels is None else pixels
+    return images.from_file(f"{name}{pixels.shape[1]}x{pixels.shape[0]}", pixels, colorspace)
 
 
 def _cache(scene):
@@ -86,7 +88,7 @@ def _veiled(alpha_mode):
     pixels[..., 3] = np.random.default_rng(2).uniform(0.0, 1.0, pixels.shape[:2]) ** 3
     if alpha_mode == "PREMUL":
         pixels[..., :3] *= pixels[..., 3:]
-    image = _file("Veiled", pixels, "sRGB")
+    image = _file(f"Veiled{alpha_mode}", pixels, "sRGB")
     image.alpha_mode = alpha_mode
     return image
 
