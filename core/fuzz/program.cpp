@@ -5,8 +5,10 @@
 #include "parts.h"
 #include "probes.h"
 
+#include <cstddef>
 #include <cstring>
 #include <string>
+#include <vector>
 
 namespace lancer_fuzz {
 
@@ -150,6 +152,11 @@ private:
     Filled *filled = nullptr;
     const lancer_scene scene = open(filled);
     const lancer_image image = records_.image();
+    if (image.mipmaps && image.width < 1u << 19) {
+      // The levels of one row are smaller together than the row.
+      std::vector<std::byte> levels(image.width * 4 * sizeof(float));
+      LANCER_CHECKED(lancer_make_mipmaps(&image, levels.data()));
+    }
     if (filled->images < kMostThings && LANCER_CHECKED(lancer_scene_add_image(scene, &image)) == LANCER_OK)
       ++filled->images;
   }

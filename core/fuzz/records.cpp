@@ -10,6 +10,7 @@ namespace {
 
 constexpr uint32_t kMostVertices = 12, kMostTriangles = 20, kMostInstances = 6;
 constexpr uint32_t kMostSide = 8; // of images
+constexpr uint32_t kWideSide = 5; // of those images that become wide
 const char *const kNames[] = {"thing", "", "UVMap", "generated", "tangent:", "tangent:UVMap", "\xff\xfe%s%n", nullptr};
 
 } // namespace
@@ -111,6 +112,8 @@ lancer_image Records::image() {
   image.tile = bytes_.rarely(60) ? 1001 + bytes_.below(25) : bytes_.rarely(4) ? ~0u : 0u;
   // The bytes of floats are valid texels of the other kinds, too.
   image.texels = bytes_.rarely(2) ? nullptr : floats(size_t(image.width) * image.height * 4, 0.0f, 1.0f);
+  if (image.texels && image.width == kWideSide)
+    make_wide(image);
   for (int i = 0; i < 9; ++i)
     image.matrix[i] = i % 4 == 0 ? 1.0f : 0.0f;
   if (flag(20))
@@ -119,9 +122,21 @@ lancer_image Records::image() {
   // A size beyond any memory: rejected before the texels are read.
   if (bytes_.rarely(2))
     image.width = image.height = 1u << (19 + bytes_.below(13));
-  else if (image.texels && image.channels <= 4 && bytes_.rarely(40))
+  else if (image.texels && image.channels <= 4 && bytes_.rarely(40) && !image.mipmaps)
     make_blocks(image);
   return image;
+}
+
+// Repeats the texels along one row, so that the image has levels.
+void Records::make_wide(lancer_image &image) {
+  constexpr uint32_t kTimes = 40;
+  const size_t given = size_t(image.width) * image.height * 4;
+  std::vector<float> texels(given * kTimes);
+  for (size_t i = 0; i < texels.size(); ++i)
+    texels[i] = static_cast<const float *>(image.texels)[i % given];
+  image.texels = keep(std::move(texels));
+  image.width *= image.height * kTimes;
+  image.height = image.mipmaps = 1;
 }
 
 // Replaces the texels by blocks, with no byte more than the library may read.

@@ -47,6 +47,7 @@ private:
   uint32_t nodes(const Filled &filled, const lancer_node *&out);
   float *floats(size_t count, float low, float high);
   void make_blocks(lancer_image &image);
+  void make_wide(lancer_image &image);
   uint32_t hidden_from() { return bytes_.rarely(40) ? bytes_.below(128) : bytes_.rarely(2) ? ~0u : 0u; }
   uint32_t flag(uint32_t often = 60) { return bytes_.rarely(often); }
 

@@ -34,8 +34,8 @@ void store(float value, uint16_t &texel) { texel = uint16_t(std::clamp(value, 0.
 void store(float value, float &texel) { texel = value; }
 
 // Decodes texels to numbers that may be averaged: a texel that is not finite becomes 0.
-template <class Texel> void decode(const Image &image, const Texel *texels, uint32_t count, float *numbers) {
-  for (uint32_t i = 0; i < count; ++i, texels += image.channels, numbers += image.channels) {
+template <class Texel> void decode(const Image &image, const Texel *texels, size_t count, float *numbers) {
+  for (size_t i = 0; i < count; ++i, texels += image.channels, numbers += image.channels) {
     bool finite = true;
     for (uint32_t c = 0; c < image.channels; ++c) {
       numbers[c] = unit_of(texels[c]);
@@ -48,9 +48,9 @@ template <class Texel> void decode(const Image &image, const Texel *texels, uint
   }
 }
 
-template <class Texel> void encode(const Image &image, const float *numbers, uint32_t count, Texel *texels) {
+template <class Texel> void encode(const Image &image, const float *numbers, size_t count, Texel *texels) {
   float texel[4];
-  for (uint32_t i = 0; i < count; ++i, texels += image.channels, numbers += image.channels) {
+  for (size_t i = 0; i < count; ++i, texels += image.channels, numbers += image.channels) {
     std::copy_n(numbers, image.channels, texel);
     if (image.transfer == Transfer::Srgb)
       bend(texel, image.channels, linear_to_srgb);
@@ -101,7 +101,7 @@ template <class Texel> void make(Image &image) {
         }
       }
     }
-    encode(image, now.data(), width * height, at(level));
+    encode(image, now.data(), size_t(width) * height, at(level));
     std::swap(before, now);
   }
 }
