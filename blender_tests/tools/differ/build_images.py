@@ -11,6 +11,13 @@ from scenes.parity import avi, image_files, images, png
 # Files of a sequence or of tiles, by number; and frames of a movie.
 _NUMBERS = {"SEQUENCE": (1, 2, 3), "TILED": (1001, 1002, 1011)}
 _FRAMES = 3
+# Texels of a picture in the texture cache for each that it would have: smaller ones have a single level.
+_ENLARGED = 64
+
+
+def is_cached(fields):
+    """Whether an image is in the texture cache, where the running Blender has one."""
+    return fields.get("cached", False) and bpy.app.version >= (5, 2)
 
 
 def _pixels(fields, number=0):
@@ -28,7 +35,7 @@ def _pixels(fields, number=0):
         pixels[..., 3] = source.uniform(0.0, 1.0, (height, width))
     elif fields.get("alpha", "none") == "cut":
         pixels[..., 3] = source.uniform(0.0, 1.0, (height, width)) < 0.5
-    return pixels
+    return pixels.repeat(_ENLARGED, 0).repeat(_ENLARGED, 1) if is_cached(fields) else pixels
 
 
 def build_image(name, fields):

@@ -36,6 +36,8 @@ class Builder:
 
     def _image(self, name, fields):
         self.things[name] = build_images.build_image(name, fields)
+        if build_images.is_cached(fields):
+            self.scene.render.use_texture_cache = self.scene.render.use_auto_generate_texture_cache = True
 
     def _photometry(self, name, fields):
         self.things[name] = build_photometry.build_photometry(name, fields)

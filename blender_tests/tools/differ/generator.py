@@ -62,6 +62,9 @@ def describe(seed):
     ]
     everything += random_properties.properties(dice, everything)
     everything = random_exact.make_exact(dice, everything)
+    if dice.chance(0.3):
+        for record in images:
+            record.fields["cached"] = True
     return [record for record in everything if record.fields or record.verb not in ("film", "layer")]
 
 
