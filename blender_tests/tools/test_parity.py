@@ -230,13 +230,12 @@ _POINT_DENSITY = {
     for name in ("closest", "linear", "cubic", "of_vertices", "of_particles", "at_the_limits", "as_bump")
 }
 _GONE_50 = {"sky_nishita_noon"} | _POINT_DENSITY
-_GONE_52 = {"image_tiles_box"}
 _ABSENT = {
     "3.4": _SINCE_50 | _SINCE_45 | _NOT_IN_3,
     "4.2": _SINCE_50 | _SINCE_45,
     "4.5": _SINCE_50,
     "5.0": _SINCE_52 | _GONE_50,
-    "5.2": _GONE_50 | _GONE_52,
+    "5.2": _GONE_50,
 }
 
 
@@ -249,7 +248,7 @@ _SHARES = {
     "lights": "lights_*",
     "materials": "materials_*,textures_*,point_density",
     "nodes": "inputs,inputs_objects,inputs_instances,inputs_places,zones,zones_bundles,left_out,settings_of_nodes,looking",
-    "others": "objects,subdivisions,cameras,passes_*,worlds,skies,films",
+    "others": "objects,subdivisions,subdivisions_inputs,cameras,passes_*,worlds,skies,films",
 }
 
 

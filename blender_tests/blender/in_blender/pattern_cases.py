@@ -109,9 +109,9 @@ def radial_tiling(side):
 
 
 def spectrum(side):
-    """Wavelengths from beyond the visible on both sides."""
+    """Wavelengths from beyond the visible on both sides. No point is at a step: Cycles' table begins at 375 nm."""
     board = Board(int(side))
-    for number, (low, high) in enumerate(((300.0, 900.0), (370.0, 390.0), (690.0, 790.0), (500.0, 510.0))):
+    for number, (low, high) in enumerate(((297.0, 899.0), (370.0, 390.0), (690.0, 790.0), (500.0, 510.0))):
         board.square(f"{number} {low:g}", _wavelengths(low, high))
     return board.answer()
 
