@@ -331,6 +331,10 @@ class LANCER_RENDER_PT_texture_cache(LancerRenderPanel, bpy.types.Panel):
     bl_label = "Texture Cache"
     bl_parent_id = "LANCER_RENDER_PT_performance"
 
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and hasattr(context.scene.render, "use_texture_cache")
+
     def draw_header(self, context):
         self.layout.prop(context.scene.render, "use_texture_cache", text="")
 
@@ -388,7 +392,7 @@ CLASSES = (
     LANCER_RENDER_PT_transparent,
     LANCER_RENDER_PT_performance,
     LANCER_RENDER_PT_threads,
-    *((LANCER_RENDER_PT_texture_cache,) if bpy.app.version >= (5, 2) else ()),
+    LANCER_RENDER_PT_texture_cache,
     LANCER_RENDER_PT_acceleration,
     LANCER_RENDER_PT_performance_viewport,
     LANCER_RENDER_PT_final_render,

@@ -85,11 +85,14 @@ def panels():
         camera=scene.camera.data,
         world=scene.world,
     )
-    shown, errors = {cls.__name__: {} for cls in ui.CLASSES}, []
+    # Older Blenders have no texture cache.
+    later = {"LANCER_RENDER_PT_texture_cache"} if bpy.app.version < (5, 2) else set()
+    classes = [cls for cls in ui.CLASSES if cls.__name__ not in later]
+    shown, errors = {cls.__name__: {} for cls in classes}, []
     context.light.use_nodes = True
     cube.modifiers.new("Subdivision", "SUBSURF")
     for variant in _variants(context):
-        for cls in ui.CLASSES:
+        for cls in classes:
             try:
                 if cls.poll(context):
                     shown[cls.__name__][variant] = recording.draw(cls, context).words
@@ -97,7 +100,7 @@ def panels():
                 errors.append(f"{cls.__name__}, {variant}: {type(error).__name__}: {error}")
     things = dict.fromkeys(("object", "material", "light", "camera", "world"))
     nothing = recording.Context(engine="LANCER", scene=scene, **things)
-    hidden = [cls.__name__ for cls in ui.CLASSES if not cls.poll(nothing)]
+    hidden = [cls.__name__ for cls in classes if not cls.poll(nothing)]
     context.engine = "CYCLES"
     foreign = [cls.__name__ for cls in ui.CLASSES if cls.poll(context)]
     return {"shown": shown, "errors": errors, "hidden": hidden, "foreign": foreign}
