@@ -1,4 +1,4 @@
-"""Emission below a coat: dimmed where the path goes on, and neither for light samples nor at the end of a path, as in Cycles."""
+"""Emission below a coat: dimmed where paths go on, and neither for light samples nor at the end of a path, as in Cycles."""
 
 import numpy as np
 import pytest
