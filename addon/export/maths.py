@@ -4,12 +4,15 @@ from mathutils import Euler, Matrix, Vector
 
 from ..bindings.enums import MappingType, MathOperation, NodeKind, VectorOperation
 from ..bindings.shading import NodeRef
+from ..messages.severity import Severity
 from . import cycles_folds
 from .sockets import EVALUATES_CONSTANTS
 
 _AXES = {"X": (1.0, 0.0, 0.0), "Y": (0.0, 1.0, 0.0), "Z": (0.0, 0.0, 1.0)}
 # Operations on vectors that apply an operation on numbers to each channel.
 _PER_CHANNEL = {name: MathOperation[name] for name in ("POWER", "ROUND", "SIGN", "WRAP")}
+# Operations on vectors whose changes over a pixel Cycles follows to images with mipmaps, and the core does not.
+_UNFOLLOWED = ("POWER", "REFRACT", "WRAP")
 
 
 def _value(graph, site, output):
@@ -53,6 +56,9 @@ def _vector_math(graph, site, output):
     name = site.node.operation
     a, b, c = (graph.input(site, socket) for socket in site.node.inputs[:3])
     scale = graph.input(site, site.node.inputs[3])
+    if name in _UNFOLLOWED and graph.images is not None and graph.images.texture_cache is not None:
+        text = f"images in the texture cache whose coordinates come from {name.title()} are sharper than in Cycles"
+        graph.tell(site, text, "", Severity.HINT)
     if name in _PER_CHANNEL:
         return graph.combine(*(graph.op(_PER_CHANNEL[name], *(graph.component(v, i) for v in (a, b, c))) for i in range(3)))
     if name == "FACEFORWARD":

@@ -25,9 +25,8 @@ _INTERPOLATION = {
     "Smart": Interpolation.CUBIC,
 }
 _STRAIGHT_COLOR = 256
-_TILE_OF_EACH_SIDE = 512
 # Cycles projects tile 1001 alone from the sides of a box, before 5.2 as an image without tiles.
-_BOX_HAS_TILES = bpy.app.version >= (5, 2)
+_FLAGS_OF_TILED_BOX = 512 if bpy.app.version >= (5, 2) else 0
 _AXES = {"NONE": None, "X": 0, "Y": 1, "Z": 2}
 
 
@@ -36,7 +35,7 @@ def _image_texture(graph, site, output):
     is_alpha = output.identifier == "Alpha"
     found, flags = _picture(graph, site), 0
     if found is not None and node.projection == "BOX" and node.image.source == "TILED":
-        found, flags = _tile_of_boxes(graph, node.image, *found), _TILE_OF_EACH_SIDE * _BOX_HAS_TILES
+        found, flags = _tile_of_boxes(graph, node.image, *found), _FLAGS_OF_TILED_BOX
     if found is None:
         is_even = node.extension != "CLIP" and (node.image is None or not is_black(node.image))
         if is_even or not HAS_TEXEL or graph.images is None:

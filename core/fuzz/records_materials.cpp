@@ -37,6 +37,7 @@ lancer_node Records::node(const Filled &filled, uint32_t at) {
   node.name = name();
   node.kind = bytes_.choice(LANCER_NODE_COUNT);
   node.option = bytes_.byte();
+  const bool steady = node.option & 0x80;
   // Most options are valid for their kind: the largest kinds have 41 and 24.
   if (node.kind == LANCER_NODE_MATH)
     node.option %= LANCER_MATH_COUNT + 1;
@@ -66,6 +67,8 @@ lancer_node Records::node(const Filled &filled, uint32_t at) {
                                                                                                          : 2);
   else if (bytes_.rarely(2))
     node.flags = ~0u;
+  if (steady)
+    node.flags |= LANCER_NODE_STEADY;
   if (picture && filled.images) {
     node.image = bytes_.reference(filled.images);
     node.image_count = node.image < filled.images ? 1 + bytes_.below(filled.images - node.image) : 1;

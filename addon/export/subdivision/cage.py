@@ -12,8 +12,8 @@ from .non_manifold import odd_corners
 # Before, it refines by the length of edges in the picture, at most ten times, and full creases are no exception.
 _THREE_LEVELS = bpy.app.version >= (4, 5)
 _LEVELS, _MOST_LEVELS = 3, 10
-# The refinements before patches are made. A sharp vertex is the blunter the fewer there are.
-PATCH_LEVELS = _LEVELS if _THREE_LEVELS else 5
+# The most refinements before patches are made: the patch at a sharp vertex then has 1 / 2^5 of a face's side.
+_FINEST = 5
 # Which corners of a UV map stay sharp, by the modifier's choice; LINEAR maps are not smoothed at all.
 _SHARP_CORNERS = {"PRESERVE_CORNERS", "PRESERVE_CORNERS_AND_JUNCTIONS", "PRESERVE_CORNERS_JUNCTIONS_AND_CONCAVE"}
 _SHARP_JUNCTIONS = _SHARP_CORNERS - {"PRESERVE_CORNERS"}
@@ -36,6 +36,11 @@ def read_cage(mesh, positions, adaptive, rate):
     levels = _LEVELS if _THREE_LEVELS else _levels(cage, rate)
     sharpness = (_limited(values, levels) for values in (cage.crease_sharpness, cage.vertex_sharpness))
     return Cage(cage.values, cage.corners, cage.starts, cage.creases, *sharpness)
+
+
+def patch_levels(cage, rate):
+    """Return the refinements before patches are made. A sharp vertex is the blunter the fewer there are."""
+    return _LEVELS if _THREE_LEVELS else min(_levels(cage, rate), _FINEST)
 
 
 def _creases(mesh, name, domain, old, field, count):

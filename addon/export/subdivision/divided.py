@@ -25,7 +25,7 @@ from ..attributes import (
 )
 from ..mesh import face_slots, read_positions
 from ..tangents import corner_tangents
-from .cage import PATCH_LEVELS, read_cage, uv_cage
+from .cage import patch_levels, read_cage, uv_cage
 from .edge_table import Rate
 from .limit_patches import LimitPatches
 from .memory import BYTES_OF_TRIANGLE, most_triangles
@@ -60,6 +60,7 @@ class _Divided:
         else:
             self._rate = Rate(adaptive.rate, adaptive.most_levels)
         self._cage = read_cage(mesh, self._positions, adaptive, self._rate)
+        self._levels = patch_levels(self._cage, self._rate)
         poll()
 
     def export(self):
@@ -92,7 +93,7 @@ class _Divided:
 
     def _surface(self):
         if self._adaptive.smooth:
-            return LimitPatches(self._cage, self._poll, PATCH_LEVELS)
+            return LimitPatches(self._cage, self._poll, self._levels)
         normals = read(self._mesh.vertices, "normal", np.float32, 3)[self._cage.corners]
         return LinearPatches(self._cage.values[self._cage.corners], self._cage, normals)
 
@@ -138,7 +139,7 @@ class _Divided:
         if rule == "NONE" or not self._adaptive.smooth:
             patches = LinearPatches(values, self._cage)
         else:
-            patches = LimitPatches(uv_cage(self._cage, values, rule), self._poll, PATCH_LEVELS)
+            patches = LimitPatches(uv_cage(self._cage, values, rule), self._poll, self._levels)
         return self._at_points(patches)
 
     def _at_points(self, patches):
@@ -190,7 +191,7 @@ class _Divided:
             at = self._uvs(values) if is_uv_map else self._at_points(LinearPatches(values, cage))
             return MeshAttribute(name, at[found.triangles.reshape(-1)], domain)
         if name == GENERATED and self._adaptive.smooth:
-            patches = LimitPatches(replace(cage, values=values.astype(float)), poll, PATCH_LEVELS)
+            patches = LimitPatches(replace(cage, values=values.astype(float)), poll, self._levels)
         else:
             patches = LinearPatches(values[cage.corners], cage)
         at = patches.at(found.patches[found.owners], found.uvs[found.owners], poll)

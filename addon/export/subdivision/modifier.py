@@ -92,7 +92,9 @@ def undeformed_cage(owner, depsgraph):
     keys = owner.original.data.shape_keys
     if not deforming and keys is None:
         return None
-    blocks = () if keys is None else keys.evaluated_get(depsgraph).key_blocks
+    keys = None if keys is None else keys.evaluated_get(depsgraph)
+    # Keys that the depsgraph does not have are the user's.
+    blocks = keys.key_blocks if keys is not None and keys.is_evaluated else ()
     muted = [False] * len(blocks)
     if blocks:
         blocks.foreach_get("mute", muted)

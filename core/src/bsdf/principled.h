@@ -260,11 +260,13 @@ void add_layers(Bsdf<F> &bsdf, const LobeInputs<F> &inputs, const PrincipledInpu
     else if (row.leaves == Leaves::Unshared)
       weight = select(there, weight * (1.0f - share), weight);
     // The coat tints light on its way in and out.
-    const MaskOf<F> tints = there & !same(in.coat_tint, V(F(1.0f)));
-    if (row.layer == PrincipledLayer::Coat && any(tints)) {
-      const V coat = through_coat(positive(in.coat_tint), cos_in(bsdf, frame), lobe.ior, in.coat);
-      weight = select(tints, weight * coat, weight);
-      tinted = select(tints, tinted * coat, tinted);
+    if (row.layer == PrincipledLayer::Coat) {
+      const MaskOf<F> tints = there & !same(in.coat_tint, V(F(1.0f)));
+      if (any(tints)) {
+        const V coat = through_coat(positive(in.coat_tint), cos_in(bsdf, frame), lobe.ior, in.coat);
+        weight = select(tints, weight * coat, weight);
+        tinted = select(tints, tinted * coat, tinted);
+      }
     }
   }
 }

@@ -42,8 +42,7 @@ enum class Interpolation : uint32_t { Linear = 0, Closest = 1, Cubic = 2 };
 inline constexpr int kBlockShift = 6;
 LANCER_LANE uint32_t blocks_along(uint32_t side) { return ((side - 1) >> kBlockShift) + 1; }
 
-// Levels of an image with mipmaps: the sides of the last fit one block.
-inline constexpr uint32_t kMostLevels = 15; // of the largest side, 2^20
+// Returns a side of a level. Each level has half the sides of the one before; those of the last fit one block.
 LANCER_LANE uint32_t level_side(uint32_t side, uint32_t level) { return side >> level > 1 ? side >> level : 1; }
 
 struct Image {

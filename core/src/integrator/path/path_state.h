@@ -31,8 +31,7 @@ struct Path {
   bool dimmed = false;        // Principled of Blender 3 has sent it below, whose exit Fresnel's weight dims
   bool after_diffuse = false; // a diffuse lobe has scattered the path
   double length = 0.0;        // of the whole path, normalised units; set by PATH
-  // What a pixel sees, as in Cycles: its width where the ray starts, and its growth along the ray. Set by PATH where images
-  // have mipmaps.
+  // Width of a pixel where the ray starts, and its growth along the ray, as in Cycles; set by PATH where images have mipmaps.
   float width = 0.0f, spread = 0.0f;
 
   // Returns the number of surfaces that the path may still pass straight through: up to limit on the whole path, and at least
