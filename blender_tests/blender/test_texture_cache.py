@@ -14,6 +14,12 @@ def test_images_with_a_file_have_mipmaps_if_the_scene_uses_the_cache(which, tmp_
     assert got["steady"] == [[], ["TRANSFORM"]]
 
 
+def test_an_operation_whose_change_is_not_followed_is_told(tmp_path):
+    without, told = blenders.run(MODULE, tmp_path, "texture_cache_cases", "unfollowed")["lines"]
+    (line,) = set(told) - set(without)
+    assert "Vector Math" in line and "come from Power are sharper than in Cycles" in line
+
+
 @pytest.mark.parametrize("which", [MODULE, PROGRAM])
 def test_levels_in_a_file_give_the_same_picture(which, tmp_path):
     got = blenders.run(which, tmp_path, "texture_cache_cases", "bits")

@@ -51,11 +51,11 @@ def _build(folder, source="file", is_turned=True):
 def _exported(cache):
     real, scene_export.texture_cache = scene_export.texture_cache, lambda scene: cache
     try:
-        snapshot, _ = export_told()
+        told = export_told()
     finally:
         scene_export.texture_cache = real
     ExportProbe.caught = None
-    return snapshot
+    return told
 
 
 def _picture(snapshot):
@@ -70,20 +70,29 @@ def asked():
     for source in ("file", "packed", "memory"):
         with tempfile.TemporaryDirectory() as folder:
             _build(folder, source)
-            snapshots = [_exported(cache) for cache in (None, CACHE)]
+            snapshots = [_exported(cache)[0] for cache in (None, CACHE)]
             answer[source] = [[picture.mipmaps for picture in snapshot.images] for snapshot in snapshots]
     nodes = [snapshot.materials[0].nodes for snapshot in snapshots]
     answer["steady"] = [[NodeKind(node.kind).name for node in of if node.flags & NODE_STEADY] for of in nodes]
     return answer
 
 
+def unfollowed():
+    """The messages of an operation whose change is not followed, with and without the cache."""
+    with tempfile.TemporaryDirectory() as folder:
+        _build(folder, is_turned=False)
+        tree = next(thing for thing in bpy.data.objects if thing.type == "MESH").data.materials[0].node_tree
+        next(node for node in tree.nodes if node.type == "VECT_MATH").operation = "POWER"
+        return {"lines": [_exported(cache)[1].lines() for cache in (None, CACHE)]}
+
+
 def bits():
     """Render with the levels in memory and in a file."""
     with tempfile.TemporaryDirectory() as folder:
         _build(folder, is_turned=False)
-        plain, whole = _exported(CACHE), _exported(None)
+        plain, whole = _exported(CACHE)[0], _exported(None)[0]
         scratch.image_memory = 1
-        moved = _exported(CACHE)
+        moved = _exported(CACHE)[0]
         scratch.image_memory = 0
     return {
         "moved": [isinstance(picture.texels, Blocks) for picture in moved.images],
