@@ -151,23 +151,16 @@ def subdivided_generated_of_armature(scene):
     _seen(scene)
 
 
-@case()
-def subdivided_generated_of_displaced(scene):
-    """A Displace modifier moves vertices along their normals."""
+@variants(values={"displaced": ("DISPLACE", {"strength": 0.5}, 1.0), "repeated": ("ARRAY", {"count": 2}, 0.6)})
+def subdivided_generated_of(scene, choice):
+    """Vertices that move along their normals, and vertices that a modifier adds, which have the coordinates of its copies."""
+    kind, settings, scale = choice
     thing = _bent(scene, _of_coordinate("Generated"))
     thing.modifiers.clear()
-    thing.modifiers.new("Displace", "DISPLACE").strength = 0.5
-    divide(scene, thing)
-    _seen(scene)
-
-
-@case()
-def subdivided_generated_of_mirrored(scene):
-    """Vertices that a modifier adds have the coordinates of its copies."""
-    thing = _bent(scene, _of_coordinate("Generated"))
-    thing.modifiers.clear()
-    thing.modifiers.new("Array", "ARRAY").count = 2
-    thing.scale = 3 * [0.6]
+    modifier = thing.modifiers.new("Modifier", kind)
+    for name, value in settings.items():
+        setattr(modifier, name, value)
+    thing.scale = 3 * [scale]
     divide(scene, thing)
     _seen(scene)
 
