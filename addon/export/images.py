@@ -5,7 +5,6 @@ import hashlib
 import numpy as np
 
 from ..bindings import snapshot
-from ..bindings.blocks import Blocks
 from ..bindings.enums import AlphaMode
 from ..host import main_thread
 from ..host.by_scene import identity
@@ -13,7 +12,7 @@ from ..messages.severity import Severity
 from .frames import shown
 from .image_sources import has_cached_file, read_all, read_memory
 from .missing import is_black, missing
-from .scratch import Scratch
+from .scratch import Scratch, bytes_in_memory
 
 # Takes the place of an image that is not used any more, until another one gets its number.
 _NOTHING = snapshot.Image(name="nothing", texels=np.zeros((1, 1, 1), np.uint8))
@@ -75,7 +74,7 @@ class Images:
             return lambda *arguments: list(made(*arguments))
 
         def stored(image, seen, tell):
-            held = sum(known.texels.nbytes for known in self.list if not isinstance(known.texels, Blocks))
+            held = sum(map(bytes_in_memory, self.list))
             return self._scratch.stored(made(image, seen, tell), held, tell)
 
         return stored

@@ -40,7 +40,7 @@ class Scratch:
         # Scratch of a window lives longer than a value of the preferences.
         limit = image_memory or int(_SHARE * machine_memory())
         for picture in pictures:
-            size = 0 if isinstance(picture.texels, Blocks) else picture.texels.nbytes
+            size = bytes_in_memory(picture)
             if held + size > limit and size >= _LEAST and not self._failed:
                 try:
                     picture, size = self._moved(picture, limit), 0
@@ -73,6 +73,13 @@ class Scratch:
         sample = _associated(sample) if is_straight else sample.copy()
         moved = Blocks(texels.shape, texels.dtype, file, offset, gaps, sample)
         return picture.replaced(texels=moved, alpha=AlphaMode.ASSOCIATED if is_straight else picture.alpha)
+
+
+def bytes_in_memory(picture):
+    """Return the bytes of a picture's texels, with those of its levels, which make a third more; 0 if they are in a file."""
+    if isinstance(picture.texels, Blocks):
+        return 0
+    return picture.texels.nbytes * 4 // 3 if picture.mipmaps else picture.texels.nbytes
 
 
 def _associated(texels):
