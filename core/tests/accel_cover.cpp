@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 namespace lancer::test {
 namespace {
 
@@ -142,6 +144,62 @@ TEST_P(CoverTest, NothingIsLookedForWhereNothingLies) {
     EXPECT_EQ(missed, 0u) << "kind " << int(kind);
     EXPECT_EQ(in_vain, 0u) << "kind " << int(kind);
   }
+}
+
+// A disc of triangles around (0, 0, 0), below many more triangles than are compared at first.
+Mesh standing_mesh(Random &random, uint32_t sides, uint32_t others) {
+  Mesh mesh;
+  mesh.positions.push_back({0.0f, 0.0f, 0.0f});
+  for (uint32_t i = 0; i < sides; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / sides;
+    mesh.positions.push_back({float(0.4 * std::cos(angle)), float(0.4 * std::sin(angle)), 0.0f});
+    mesh.triangles.push_back({0, 1 + i, 1 + (i + 1) % sides});
+  }
+  for (uint32_t i = 0; i < others; ++i) {
+    const auto first = uint32_t(mesh.positions.size());
+    const glm::dvec3 p = random.in_box(0.4) + glm::dvec3(0.0, 0.0, 1.0);
+    for (int corner = 0; corner < 3; ++corner)
+      mesh.positions.push_back(glm::vec3(p + random.in_box(0.01)));
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+  return mesh;
+}
+
+TEST_P(CoverTest, LargeMeshesCoverTheFloorWhereTheyStand) {
+  Random random(95);
+  const double scale = GetParam();
+  constexpr uint32_t kSides = 48;
+  Geometry geometry;
+  geometry.meshes = {square_mesh(8.0f), standing_mesh(random, kSides, 20000)};
+  const auto add = [&](uint32_t mesh, double x) {
+    Instance instance;
+    instance.mesh = mesh;
+    instance.slot_count = 1;
+    instance.place({glm::dmat3(scale), {scale * x, 0.0, 0.0}});
+    geometry.instances.push_back(instance);
+  };
+  for (const double x : {-2.0, 1.0, 3.0})
+    add(1, x);
+  add(0, 0.0);
+  const FaceRounding rounding(geometry, glm::dvec3(0.0));
+  const CoplanarFaces faces = find_coplanar_faces(geometry, rounding, {}, {1, nullptr});
+  ASSERT_TRUE(faces.any());
+  // Every side of each disc covers the floor, and nothing else does.
+  size_t missed = 0, in_vain = 0;
+  const double inner = 0.4 * std::cos(std::numbers::pi / kSides);
+  for (int i = 0; i < 20000; ++i) {
+    const glm::dvec2 at(random.uniform(-4.0, 4.0), random.uniform(-1.0, 1.0));
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const double x : {-2.0, 1.0, 3.0})
+      nearest = std::min(nearest, glm::length(at - glm::dvec2(x, 0.0)));
+    const bool covered = faces.may_be_covered(3, at.y > at.x, {scale * at, 0.0});
+    missed += nearest < inner - kBorder && !covered;
+    in_vain += nearest > 0.4 + kBorder && covered;
+  }
+  EXPECT_EQ(missed, 0u);
+  EXPECT_EQ(in_vain, 0u);
+  for (uint32_t primitive = 0; primitive < geometry.meshes[1].triangles.size(); ++primitive)
+    EXPECT_EQ(faces.has(0, primitive), primitive < kSides);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scales, CoverTest, testing::Values(1e-3, 1.0, 1e3));

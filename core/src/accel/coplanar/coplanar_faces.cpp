@@ -12,6 +12,9 @@ namespace {
 constexpr size_t kBoxes = 256, kPairs = 32;
 // Number of coplanar faces after which a face counts as heaped: two heaped faces are not compared.
 constexpr uint32_t kOthers = 64;
+// Largest numbers of faces that are looked at, and of those that are compared, to complete the planes of instances of which
+// some faces are compared.
+constexpr size_t kScanned = 1 << 20, kAdded = 1 << 14;
 // Limit of patches over all faces; beyond it faces count as covered anywhere.
 constexpr size_t kPatches = 1 << 17;
 
@@ -70,11 +73,13 @@ public:
       : geometry(g), rounding(r), rules(known), context(c), chosen(choose_faces(g, r, c)), candidates(chosen.faces) {}
 
   CoplanarFaces find() {
-    const bool all = compare();
-    if (!all)
+    const bool compared = compare();
+    if (!compared)
       spread();
+    complete_ = compared && complete();
     CoplanarFaces faces;
-    if (mark(faces) && all)
+    mark(faces);
+    if (complete_)
       cover(faces);
     return faces;
   }
@@ -86,7 +91,7 @@ private:
     uint32_t candidate;
   };
 
-  // Returns false if there are too many pairs to compare.
+  // Compares candidates, unless both have been compared before. Returns false if there are too many pairs.
   bool compare() {
     std::vector<Entry> entries;
     for (uint32_t i = 0; i < candidates.size(); ++i)
@@ -103,7 +108,7 @@ private:
         FaceCandidate &other = candidates[entries[k].candidate];
         if (boxes-- == 0 || pairs == 0)
           return false;
-        if (!boxes_meet(one.low, one.high, other.low, other.high) || same_border(one, other))
+        if (!(one.fresh || other.fresh) || !boxes_meet(one.low, one.high, other.low, other.high) || same_border(one, other))
           continue;
         if (one.found >= kOthers && other.found >= kOthers) {
           one.anywhere = other.anywhere = true;
@@ -158,16 +163,55 @@ private:
     return shared == 1 || shared == 2;
   }
 
-  // Returns false if faces that were not compared may also be coplanar.
-  bool mark(CoplanarFaces &faces) const {
-    bool all = true;
+  // Calls use(instance, begin, end, found) with the candidates of each instance of which some are coplanar with others.
+  template <class Use> void each_instance(Use &&use) const {
     for (size_t begin = 0, end; begin < candidates.size(); begin = end) {
       const uint32_t instance = candidates[begin].instance;
       size_t found = 0;
       for (end = begin; end < candidates.size() && candidates[end].instance == instance; ++end)
         found += candidates[end].found > 0;
-      if (found == 0)
-        continue;
+      if (found > 0)
+        use(instance, begin, end, found);
+    }
+  }
+
+  // Compares the other faces in the planes of coplanar faces, too. Returns false if there are too many of them: then any face
+  // in such a plane may be coplanar with others.
+  bool complete() {
+    std::vector<FaceCandidate> added;
+    size_t scanned = 0;
+    each_instance([&](uint32_t instance, size_t begin, size_t end, size_t found) {
+      const size_t count = faces_of(geometry, instance);
+      scanned += count <= end - begin ? 0 : count;
+      if (count <= end - begin || scanned > kScanned || added.size() > kAdded)
+        return;
+      std::vector<uint64_t> bits((count + 63) / 64, 0);
+      mark_planes(instance, begin, end, found, bits.data());
+      for (size_t i = begin; i < end; ++i)
+        bits[candidates[i].primitive >> 6] &= ~(uint64_t{1} << (candidates[i].primitive & 63));
+      for (size_t word = 0; word < bits.size(); ++word)
+        for (uint64_t rest = bits[word]; rest != 0; rest &= rest - 1) {
+          const auto primitive = uint32_t(64 * word + size_t(std::countr_zero(rest)));
+          glm::dvec3 corner[3];
+          world_corners(geometry, instance, primitive, corner);
+          if (const auto candidate = face_candidate(rounding, instance, primitive, corner))
+            added.push_back(*candidate);
+        }
+    });
+    if (scanned > kScanned || added.size() > kAdded)
+      return false;
+    if (added.empty())
+      return true;
+    for (FaceCandidate &c : candidates)
+      c.fresh = false;
+    candidates.insert(candidates.end(), added.begin(), added.end());
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const FaceCandidate &a, const FaceCandidate &b) { return number_of(a) < number_of(b); });
+    return compare();
+  }
+
+  void mark(CoplanarFaces &faces) const {
+    each_instance([&](uint32_t instance, size_t begin, size_t end, size_t found) {
       if (!faces.any()) {
         faces.instances.assign(geometry.instances.size(), 0);
         faces.first.assign(geometry.instances.size(), 0);
@@ -177,14 +221,12 @@ private:
       const size_t count = faces_of(geometry, instance);
       faces.bits.resize(faces.bits.size() + (count + 63) / 64, 0);
       uint64_t *bits = &faces.bits[faces.first[instance]];
-      if (count <= end - begin)
+      if (complete_ || count <= end - begin)
         for (size_t i = begin; i < end; ++i)
           bits[candidates[i].primitive >> 6] |= uint64_t{candidates[i].found > 0} << (candidates[i].primitive & 63);
       else
         mark_planes(instance, begin, end, found, bits);
-      all = all && count <= end - begin;
-    }
-    return all;
+    });
   }
 
   // Marks those faces of an instance that were not compared but lie in the plane of a coplanar face that was found.
@@ -252,6 +294,7 @@ private:
   FaceCandidates chosen;
   std::vector<FaceCandidate> &candidates;
   std::vector<Patch> patches;
+  bool complete_ = false; // all faces that may be coplanar with others have been compared
 };
 
 } // namespace

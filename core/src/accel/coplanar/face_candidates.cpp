@@ -86,17 +86,8 @@ private:
   }
 
   void add(uint32_t instance, uint32_t primitive, const glm::dvec3 corner[3]) {
-    FaceCandidate c;
-    std::copy(corner, corner + 3, c.corner);
-    c.face = triangle_face(corner);
-    if (!(c.face.height > 0.0))
-      return;
-    c.rounding = rounding.share(instance, corner[0]);
-    c.low = glm::min(corner[0], glm::min(corner[1], corner[2])) - c.rounding;
-    c.high = glm::max(corner[0], glm::max(corner[1], corner[2])) + c.rounding;
-    c.instance = instance;
-    c.primitive = primitive;
-    found.faces.push_back(c);
+    if (const auto candidate = face_candidate(rounding, instance, primitive, corner))
+      found.faces.push_back(*candidate);
   }
 
   // Adds the square around a flat part of an exact surface, in its own space at a height.
@@ -188,6 +179,21 @@ size_t faces_of(const Geometry &geometry, uint32_t instance) {
   if (placed.kind == ShapeKind::Mesh)
     return geometry.meshes[placed.mesh].triangles.size();
   return placed.kind == ShapeKind::Sphere ? 0 : 1;
+}
+
+std::optional<FaceCandidate> face_candidate(const FaceRounding &rounding, uint32_t instance, uint32_t primitive,
+                                            const glm::dvec3 corner[3]) {
+  FaceCandidate c;
+  std::copy(corner, corner + 3, c.corner);
+  c.face = triangle_face(corner);
+  if (!(c.face.height > 0.0))
+    return {};
+  c.rounding = rounding.share(instance, corner[0]);
+  c.low = glm::min(corner[0], glm::min(corner[1], corner[2])) - c.rounding;
+  c.high = glm::max(corner[0], glm::max(corner[1], corner[2])) + c.rounding;
+  c.instance = instance;
+  c.primitive = primitive;
+  return c;
 }
 
 FaceCandidates choose_faces(const Geometry &geometry, const FaceRounding &rounding, const BuildContext &context) {

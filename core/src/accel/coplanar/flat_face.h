@@ -75,7 +75,11 @@ struct FaceCandidate {
   uint32_t instance, primitive;
   uint32_t found = 0;    // number of coplanar faces found
   bool anywhere = false; // more of them than patches keep
+  bool fresh = true;     // not yet compared
 };
+// Returns the candidate of a triangle, or of half of a square; none if it has no extent.
+std::optional<FaceCandidate> face_candidate(const FaceRounding &rounding, uint32_t instance, uint32_t primitive,
+                                            const glm::dvec3 corner[3]);
 
 struct FaceCandidates {
   std::vector<FaceCandidate> faces; // grouped by instance
