@@ -100,6 +100,20 @@ def world_hot_pixel(scene):
     _pictured(scene, _heaven(128, 64, sun=2000.0), (0.0, 0.0, 0.8))
 
 
+@case(quick=True, bounces=1)
+def world_on_coarse_shapes(scene):
+    """Smooth cones of few faces: their normals let light shine that comes from behind the faces, under a sky with a bright spot."""
+    spot = np.full((8, 16, 4), 0.2)
+    spot[5, 3, :3] = spot[2, 12, :3] = 8.0
+    image = images.image("Spot", spot, images.LINEAR, is_float=True, pack=False)
+    _pictured(scene, image)
+    matt, gloss = shader("ShaderNodeBsdfDiffuse", Color=(0.8, 0.7, 0.6)), shader("ShaderNodeBsdfGlossy", Roughness=0.5)
+    for number, material in enumerate((matt, gloss)):
+        mesh = parts.lathe_mesh(f"Cone {number}", [(0.0, -1.0), (1.0, -1.0), (0.0, 1.0)], segments=6)
+        parts.place(scene, f"Cone {number}", mesh, material, (2.2 * number - 1.1, 0, 0), rotation=(0.3, 0.2, 0.4))
+    camera(scene, (0, -5.5, 1.6), (0, 0, 0))
+
+
 @case()
 def world_mirror_ball(scene):
     _things(scene)

@@ -187,6 +187,10 @@ double Environment::flux_of(const Sun &sun, const Program &plain) const {
   return std::max(sum, 0.0) / (kSunLooks * kSunLooks) * 4.0 * glm::pi<double>() * s * s;
 }
 
+double Environment::pdf_in_proportion(const glm::vec3 &radiance) const {
+  return mean_ > 0.0 ? double(weight_of(radiance)) / (4.0 * glm::pi<double>() * mean_) : 0.0;
+}
+
 LightSample Environment::sample(const glm::vec2 &u, std::span<glm::vec4> values, const Camera *camera, bool transmits) const {
   LightSample sample;
   sample.distance = std::numeric_limits<double>::infinity();

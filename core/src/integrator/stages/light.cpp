@@ -25,7 +25,7 @@ void LightStage::begin() {
   lamps_ = emitters_ = skies_ = samples_.far = 0;
   for (uint32_t lane = 0; lane < kBlockLanes; ++lane) {
     lamp_[lane] = &nothing;
-    samples_.pdf[lane] = 0.0;
+    samples_.pdf[lane] = samples_.weighed[lane] = 0.0;
     samples_.delta[lane] = samples_.hidden[lane] = 0;
   }
 }
@@ -236,6 +236,15 @@ void LightStage::sample_sky(const VertexNumbers &numbers, uint32_t transmits) {
   samples_.far |= skies_;
   sky_.look(samples_.wi, skies_);
   each_lane(skies_, [&](uint32_t lane) { put(sky_.radiance(lane), samples_.radiance, lane); });
+}
+
+// Finds the densities that weigh samples of the environment from behind faces that do not transmit light.
+void LightStage::weigh_from_behind(const LobeBlock &lobes) {
+  each_lane(skies_ & ~lobes.transmits, [&](uint32_t lane) {
+    if (glm::dot(glm::dvec3(get(lobes.ng, lane)), get(samples_.wi, lane)) < 0.0)
+      samples_.weighed[lane] =
+          choices_.probability[lane] * scene_.lights.environment().pdf_in_proportion(get(samples_.radiance, lane));
+  });
 }
 
 SkyStage::SkyStage(const Scene &scene, const Camera *camera) : scene_(scene), values_(scene.world.program.value_count()) {

@@ -62,9 +62,9 @@ struct alignas(64) LightChoices {
 };
 
 // The members of LightSample; target only of lights that are not far; distance: infinite for suns, unset for the environment.
-// pdf includes the probability of the choice, 0: no sample.
+// pdf includes the probability of the choice, 0: no sample; weighed: in place of pdf in the weight against BSDF samples, 0: pdf.
 struct alignas(64) LightSamples {
-  Doubles wi[3], target[3], distance, pdf;
+  Doubles wi[3], target[3], distance, pdf, weighed;
   Floats radiance[3];
   Words delta, hidden; // hidden: RayKind bits of the rays that do not see the light; by LightStage
   uint32_t far = 0;    // bits of lanes: the light is at infinity; by LightStage
@@ -158,6 +158,7 @@ public:
       sky_.set_path(lane, of_lane, nullptr);
     });
     sample_sky(numbers, lobes.transmits);
+    weigh_from_behind(lobes);
   }
   // Samples this light in all of these lanes, seen from p; an emitter's face by its power. The nodes of the light see no path.
   void sample(uint32_t light, uint32_t lanes, const Doubles (&p)[3], const VertexNumbers &numbers);
@@ -188,6 +189,7 @@ private:
   glm::vec3 face_emission(uint32_t lane, LightPath<float> path);
   void sample_shape(uint32_t lane, const Doubles (&p)[3], const VertexNumbers &numbers, LightPath<float> path);
   void sample_sky(const VertexNumbers &numbers, uint32_t transmits);
+  void weigh_from_behind(const LobeBlock &lobes);
   // Multiplies the radiance of lamps by what their nodes say.
   template <class PathOf> void shade_lamps(PathOf &&path) {
     uint32_t shaded = 0;

@@ -130,8 +130,9 @@ LANCER_LANE void light_of(const LitVertices &vertices, const LightSamples &sampl
   // BSDF samples find the same light, unless it is a single direction; only paths that are scattered take them. The weights
   // count one sample of each technique even where samples split, as in Cycles. The count matters: with interpolated normals,
   // the two techniques do not find the same light, so that the weights change the picture.
-  const D scatters = D(1.0) - widen(load(lobes.pass + first));
-  const F weight = select(has_bit(samples.delta + first, 1u), F(1.0f), mis_weight(pdf, widen(value.pdf) * scatters));
+  const D scatters = D(1.0) - widen(load(lobes.pass + first)), weighed = load(samples.weighed + first);
+  const F weight = select(has_bit(samples.delta + first, 1u), F(1.0f),
+                          mis_weight(select(weighed > D(0.0), weighed, pdf), widen(value.pdf) * scatters));
   // f over a density is of the order of 1, however narrow the lobe and however bright the light.
   const V3 contribution =
       load3(vertices.beta, first) * (f * narrow(widen(weight) / (pdf * load(vertices.count + first)))) * radiance;
