@@ -111,6 +111,29 @@ TEST(Mipmaps, AverageLight) {
   // Red of half the alpha: its colour is divided by alpha before the curve, and multiplied after. 127.5 may round either way.
   EXPECT_NEAR(texel[0], 127.5, 0.5);
   EXPECT_EQ(texel[3], 128);
+  // The same stripes of words: 146.41 of 255, as near as a word tells it.
+  std::vector<uint16_t> words;
+  for (int i = 0; i < 128 * 128; ++i)
+    words.push_back(uint16_t(257 * (i % 2 ? 192 : 64)));
+  const Image fine = made(image_of(words, 128, 128, 1), LANCER_TRANSFER_SRGB);
+  EXPECT_NEAR(level_of<uint16_t>(fine, 1)[0] / 257.0, 146.41, 0.01);
+}
+
+// The mean light of any two bytes is the nearest byte of its curve; the float of the mean moves the curve by less than 1e-4.
+TEST(Mipmaps, BytesAreTheNearestOfTheCurve) {
+  const auto to_linear = [](double c) { return c < 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); };
+  const auto to_srgb = [](double c) { return c < 0.0031308 ? c * 12.92 : 1.055 * std::pow(c, 1.0 / 2.4) - 0.055; };
+  // Column pairs of each row: the row's number and that of the pair.
+  std::vector<uint8_t> texels;
+  for (uint32_t y = 0; y < 256; ++y)
+    for (uint32_t x = 0; x < 512; ++x)
+      texels.push_back(uint8_t(x % 2 ? y & ~1u : x / 2));
+  const Image image = made(image_of(texels, 512, 256, 1), LANCER_TRANSFER_SRGB);
+  for (uint32_t y = 0; y < 128; ++y)
+    for (uint32_t x = 0; x < 256; ++x) {
+      const double mean = 0.5 * (to_linear(x / 255.0) + to_linear(2 * y / 255.0));
+      EXPECT_NEAR(level_of<uint8_t>(image, 1)[y * 256 + x], 255.0 * to_srgb(mean), 0.5 + 1e-4);
+    }
 }
 
 TEST(Mipmaps, TexelsThatAreNotFiniteAreBlack) {
