@@ -231,28 +231,50 @@ PixelCone::PixelCone(const Camera &camera) {
   spread = change_over_pixel(here.d, right.d, above.d);
 }
 
-double pixel_spread(const Camera &camera, const glm::dvec3 &d) {
-  if (!camera.is_panorama())
-    return PixelCone(camera).spread * relative_spread(camera, d);
-  const glm::dvec3 here = glm::normalize(glm::transpose(camera.to_world.linear) * d);
-  const glm::dvec2 place = panorama_place(camera, here);
-  const glm::dvec3 right = panorama_direction(camera, place + glm::dvec2((camera.right - camera.left) / camera.width, 0.0));
-  const glm::dvec3 above = panorama_direction(camera, place + glm::dvec2(0.0, (camera.top - camera.bottom) / camera.height));
+namespace {
+
+// Returns the change of a perspective camera's ray through a place at depth 1, in the camera's frame.
+double change_at(const Camera &camera, const glm::dvec3 &at) {
+  const glm::dvec3 right((camera.right - camera.left) / camera.width, 0.0, 0.0);
+  const glm::dvec3 above(0.0, (camera.top - camera.bottom) / camera.height, 0.0);
+  return change_over_pixel(at, at + right, at + above);
+}
+double change_at_middle(const Camera &camera) {
+  return change_at(camera, {0.5 * (camera.left + camera.right), 0.5 * (camera.bottom + camera.top), -1.0});
+}
+
+// Returns the change in a direction of the camera's frame over that at the middle; 1 for other cameras and behind the camera.
+double relative_change(const Camera &camera, const glm::dvec3 &local, double at_middle) {
+  const bool varies = camera.kind == CameraKind::Perspective && local.z < 0.0;
+  return varies ? change_at(camera, local / -local.z) / at_middle : 1.0;
+}
+
+} // namespace
+
+double relative_spread(const Camera &camera, const glm::dvec3 &d) {
+  return relative_change(camera, glm::transpose(camera.to_world.linear) * d, change_at_middle(camera));
+}
+
+PixelSpread::PixelSpread(const Camera &camera) : camera_(camera) {
+  if (camera.is_panorama())
+    return;
+  of_middle_ = PixelCone(camera).spread;
+  relative_to_ = change_at_middle(camera);
+}
+
+double PixelSpread::operator()(const glm::dvec3 &d) const {
+  const glm::dvec3 local = glm::transpose(camera_.to_world.linear) * d;
+  if (!camera_.is_panorama())
+    return of_middle_ * relative_change(camera_, local, relative_to_);
+  const glm::dvec3 here = glm::normalize(local);
+  const glm::dvec2 place = panorama_place(camera_, here);
+  const glm::dvec3 right = panorama_direction(camera_, place + glm::dvec2((camera_.right - camera_.left) / camera_.width, 0.0));
+  const glm::dvec3 above =
+      panorama_direction(camera_, place + glm::dvec2(0.0, (camera_.top - camera_.bottom) / camera_.height));
   // Beyond the edge of the field of view there is no direction.
   if (right == glm::dvec3(0.0) || above == glm::dvec3(0.0))
     return 0.0;
   return change_over_pixel(here, right, above);
-}
-
-double relative_spread(const Camera &camera, const glm::dvec3 &d) {
-  const glm::dvec3 local = glm::transpose(camera.to_world.linear) * d;
-  if (camera.kind != CameraKind::Perspective || !(local.z < 0.0))
-    return 1.0;
-  const glm::dvec3 right((camera.right - camera.left) / camera.width, 0.0, 0.0);
-  const glm::dvec3 above(0.0, (camera.top - camera.bottom) / camera.height, 0.0);
-  const glm::dvec3 middle(0.5 * (camera.left + camera.right), 0.5 * (camera.bottom + camera.top), -1.0);
-  const auto spread = [&](const glm::dvec3 &at) { return change_over_pixel(at, at + right, at + above); };
-  return spread(local / -local.z) / spread(middle);
 }
 
 } // namespace lancer

@@ -67,8 +67,18 @@ struct PixelCone {
 // Returns the spread of a perspective camera's pixel in direction d, relative to that in the middle; 1 for other cameras.
 double relative_spread(const Camera &camera, const glm::dvec3 &d);
 
-// Returns the mean change of a ray's direction d over a pixel, as Cycles measures it; 0 for an orthographic camera.
-double pixel_spread(const Camera &camera, const glm::dvec3 &d);
+// The mean change of a ray's direction over a pixel, as Cycles measures it. It keeps the numbers that all rays share.
+class PixelSpread {
+public:
+  // The camera must outlive it.
+  explicit PixelSpread(const Camera &camera);
+  // Returns the change in direction d; 0 for an orthographic camera.
+  double operator()(const glm::dvec3 &d) const;
+
+private:
+  const Camera &camera_;
+  double of_middle_ = 0.0, relative_to_ = 0.0; // the cone's spread, and the change that relative_spread() divides by
+};
 
 // Panoramic projections between a place in the whole panorama, 0 ... 1, and a direction. Local frame: -z forwards, y up.
 

@@ -50,7 +50,7 @@ void PathIntegrator::start(std::span<const SampleAddress> addresses, std::span<S
     queue_.from[i].p = queue_.rays[i].o;
   for (size_t i = 0; i < queue_.rays.size() && scene_.features & kFeatureMipmaps; ++i) {
     queue_.paths[i].width = float(width_at_eye_);
-    queue_.paths[i].spread = float(pixel_spread(seen_by_, queue_.rays[i].d));
+    queue_.paths[i].spread = float(spread_at_eye_(queue_.rays[i].d));
   }
   counts_.camera += queue_.paths.size();
 }

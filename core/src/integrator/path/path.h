@@ -24,9 +24,9 @@ namespace lancer {
 class PathIntegrator final : public Integrator {
 public:
   PathIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
-      : scene_(scene), settings_(settings), seen_by_(camera), width_at_eye_(PixelCone(camera).base), camera_(camera, settings),
-        film_(scene, camera, settings), hit_(scene, camera), met_(scene, camera), queues_(scene), textures_(scene),
-        surface_(scene, camera, settings), light_(scene, &camera), occlusion_(scene, settings),
+      : scene_(scene), settings_(settings), spread_at_eye_(camera), width_at_eye_(PixelCone(camera).base),
+        camera_(camera, settings), film_(scene, camera, settings), hit_(scene, camera), met_(scene, camera), queues_(scene),
+        textures_(scene), surface_(scene, camera, settings), light_(scene, &camera), occlusion_(scene, settings),
         shadow_(scene, camera, settings), last_bounces_(settings.max_bounces) {
     if (std::ranges::any_of(scene.materials, [](const Material &material) { return material.program.looks_around; }))
       surface_.look_by(node_rays_.emplace(scene));
@@ -93,7 +93,7 @@ private:
 
   const Scene &scene_;
   IntegratorSettings settings_;
-  const Camera &seen_by_;
+  PixelSpread spread_at_eye_;
   double width_at_eye_; // of a pixel
   // The stages, in the order of a bounce.
   CameraStage camera_;
