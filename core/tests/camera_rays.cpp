@@ -121,4 +121,30 @@ TEST(CameraRays, WholeFilterInLanes) {
   }
 }
 
+// The spread of a pixel is the change to the rays of the pixels beside it; half a pixel further, the derivative errs by less
+// than the square of a pixel's size at depth 1.
+TEST(CameraRays, SpreadIsTheChangeToThePixelsBeside) {
+  for (const double wide : {0.1, 1.0, 3.0})
+    for (const uint32_t width : {64u, 1920u}) {
+      Camera camera = lancer_test::camera(CameraKind::Perspective, {});
+      camera.width = width;
+      camera.height = width / 2;
+      camera.left = -0.3 * wide;
+      camera.right = 0.7 * wide;
+      camera.bottom = -0.25 * wide;
+      camera.top = 0.25 * wide;
+      const PixelSpread spread(camera);
+      const double size = wide / width;
+      for (uint32_t i = 0; i <= 8; ++i)
+        for (uint32_t k = 0; k <= 8; ++k) {
+          const glm::dvec2 at(i / 8.0 * width, k / 8.0 * camera.height);
+          const auto d = [&](double x, double y) {
+            return glm::normalize(camera.ray(at + glm::dvec2(x, y), glm::dvec2(0.0)).d);
+          };
+          const double change = 0.5 * (glm::length(d(1, 0) - d(0, 0)) + glm::length(d(0, 1) - d(0, 0)));
+          EXPECT_NEAR(spread(d(0, 0)) / change, 1.0, size * size) << wide << ", " << width << ", " << i << ", " << k;
+        }
+    }
+}
+
 } // namespace

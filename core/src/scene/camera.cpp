@@ -233,20 +233,21 @@ PixelCone::PixelCone(const Camera &camera) {
 
 namespace {
 
-// Returns the change of a perspective camera's ray through a place at depth 1, in the camera's frame.
-double change_at(const Camera &camera, const glm::dvec3 &at) {
-  const glm::dvec3 right((camera.right - camera.left) / camera.width, 0.0, 0.0);
-  const glm::dvec3 above(0.0, (camera.top - camera.bottom) / camera.height, 0.0);
-  return change_over_pixel(at, at + right, at + above);
+// Returns the mean change of a perspective camera's unit direction over a pixel to the right and one above, from a place at
+// depth 1 in the camera's frame: the derivative half a pixel further, which errs by the square of a pixel's size.
+double change_at(const Camera &camera, const glm::dvec2 &at) {
+  const double right = (camera.right - camera.left) / camera.width, above = (camera.top - camera.bottom) / camera.height;
+  const double x = at.x + 0.5 * right, y = at.y + 0.5 * above, x2 = 1.0 + at.x * at.x, y2 = 1.0 + at.y * at.y;
+  return 0.5 * (std::abs(right) * std::sqrt(y2) / (x * x + y2) + std::abs(above) * std::sqrt(x2) / (x2 + y * y));
 }
 double change_at_middle(const Camera &camera) {
-  return change_at(camera, {0.5 * (camera.left + camera.right), 0.5 * (camera.bottom + camera.top), -1.0});
+  return change_at(camera, {0.5 * (camera.left + camera.right), 0.5 * (camera.bottom + camera.top)});
 }
 
 // Returns the change in a direction of the camera's frame over that at the middle; 1 for other cameras and behind the camera.
 double relative_change(const Camera &camera, const glm::dvec3 &local, double at_middle) {
   const bool varies = camera.kind == CameraKind::Perspective && local.z < 0.0;
-  return varies ? change_at(camera, local / -local.z) / at_middle : 1.0;
+  return varies ? change_at(camera, glm::dvec2(local) / -local.z) / at_middle : 1.0;
 }
 
 } // namespace
