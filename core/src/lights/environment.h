@@ -60,9 +60,9 @@ public:
   LightSample sample(const glm::vec2 &u, std::span<glm::vec4> values, const Camera *camera, bool transmits) const;
   // Returns the density per solid angle with which sample() gives wi, evaluated for wi rounded to float, as nodes read it.
   double pdf(const glm::dvec3 &wi, bool transmits) const { return is_light() ? map(transmits).pdf(glm::vec3(wi)) : 0.0; }
-  // Returns the density of a direction of this radiance where directions are sampled in proportion to it. By this density Cycles
-  // weighs light samples that arrive from behind the face, where the shading normal lets them shine. BSDF samples never take
-  // these directions, so that the weight stays in the picture.
+  // Returns the density of a direction of this radiance where directions are sampled in proportion to it. By this density
+  // Cycles weighs light samples that arrive from behind the face, where the shading normal lets them shine. BSDF samples never
+  // take these directions, so that the weight stays in the picture. The map of Cycles is taken to be as fine as the radiance.
   double pdf_in_proportion(const glm::vec3 &radiance) const;
 
   // The map for kernels. The environment must be a light; the table is valid until the environment is changed or moved.

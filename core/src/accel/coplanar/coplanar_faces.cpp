@@ -18,47 +18,6 @@ constexpr size_t kScanned = 1 << 20, kAdded = 1 << 14;
 // Limit of patches over all faces; beyond it faces count as covered anywhere.
 constexpr size_t kPatches = 1 << 17;
 
-// Returns whether two triangles in one plane overlap by more than a border of this width.
-bool overlap(const FaceCandidate &one, const FaceCandidate &other, double border) {
-  const glm::dvec3 &n = one.face.n;
-  for (const FaceCandidate *c : {&one, &other})
-    for (int i = 0; i < 3; ++i) {
-      const glm::dvec3 edge = c->corner[i == 2 ? 0 : i + 1] - c->corner[i];
-      const glm::dvec3 across = glm::cross(n, edge);
-      double low[2], high[2];
-      const FaceCandidate *both[2] = {&one, &other};
-      for (int k = 0; k < 2; ++k) {
-        const double a = glm::dot(across, both[k]->corner[0] - c->corner[i]),
-                     b = glm::dot(across, both[k]->corner[1] - c->corner[i]),
-                     d = glm::dot(across, both[k]->corner[2] - c->corner[i]);
-        low[k] = std::min({a, b, d});
-        high[k] = std::max({a, b, d});
-      }
-      if (std::min(high[0], high[1]) - std::max(low[0], low[1]) <= border * glm::length(across))
-        return false;
-    }
-  return true;
-}
-
-bool in_one_plane(const FaceRounding &rounding, const FaceCandidate &one, const FaceCandidate &other) {
-  const FaceCandidate &large = one.face.height >= other.face.height ? one : other, &small = &large == &one ? other : one;
-  const glm::dvec3 middle = (small.corner[0] + small.corner[1] + small.corner[2]) / 3.0;
-  // Reject most pairs by the cheap upper bound.
-  const double most = large.rounding + small.rounding;
-  if (!parallel(large.face, small.face, most))
-    return false;
-  const double apart = rounding.apart(large.instance, small.instance, large.face.n, middle);
-  if (!parallel(large.face, small.face, apart))
-    return false;
-  // Allow more outside the larger face, where its plane is less precise.
-  const glm::dvec3 centre = (large.corner[0] + large.corner[1] + large.corner[2]) / 3.0;
-  for (const glm::dvec3 &corner : small.corner)
-    if (!(std::abs(glm::dot(corner - large.face.p, large.face.n)) <=
-          apart * (1.0 + glm::length(corner - centre) / large.face.height)))
-      return false;
-  return overlap(one, other, 8.0 * apart);
-}
-
 // The part of a face that another covers.
 struct Patch {
   uint64_t face; // instance and primitive
@@ -73,10 +32,7 @@ public:
       : geometry(g), rounding(r), rules(known), context(c), chosen(choose_faces(g, r, c)), candidates(chosen.faces) {}
 
   CoplanarFaces find() {
-    const bool compared = compare();
-    if (!compared)
-      spread();
-    complete_ = compared && complete();
+    complete_ = compare() && complete();
     CoplanarFaces faces;
     mark(faces);
     if (complete_)
@@ -91,8 +47,16 @@ private:
     uint32_t candidate;
   };
 
-  // Compares candidates, unless both have been compared before. Returns false if there are too many pairs.
+  // Compares candidates, unless both have been compared before. Returns false if there are too many pairs: what is found is
+  // then extrapolated.
   bool compare() {
+    const bool all = compare_pairs();
+    if (!all)
+      spread();
+    return all;
+  }
+
+  bool compare_pairs() {
     std::vector<Entry> entries;
     for (uint32_t i = 0; i < candidates.size(); ++i)
       for_each_plane_cell(candidates[i].face, candidates[i].rounding, chosen.step, [&](uint64_t cell) {

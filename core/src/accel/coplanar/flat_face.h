@@ -81,6 +81,9 @@ struct FaceCandidate {
 std::optional<FaceCandidate> face_candidate(const FaceRounding &rounding, uint32_t instance, uint32_t primitive,
                                             const glm::dvec3 corner[3]);
 
+// Returns whether two candidates lie in one plane and overlap there.
+bool in_one_plane(const FaceRounding &rounding, const FaceCandidate &one, const FaceCandidate &other);
+
 struct FaceCandidates {
   std::vector<FaceCandidate> faces; // grouped by instance
   double step = 1.0;                // quantisation step of the distance of planes
