@@ -50,7 +50,7 @@ logged = $(2) >$(1) 2>&1 || { cat $(1); exit 1; }
 platforms := linux-x64 linux-arm64 windows-x64 macos-arm64 macos-x64
 zig = $(realpath $(wildcard build/zig/lib/python3*/site-packages/ziglang/zig))
 
-.PHONY: build render test test-slow test-platforms mutants bench accuracy tradeoff farm-demo scaling features pilot parity differ corpus course sanitize fuzz addon addons wheel bindings format clean help
+.PHONY: build render test test-slow test-platforms mutants bench accuracy tradeoff farm-demo scaling features pilot parity differ corpus course device-check sanitize fuzz addon addons wheel bindings format clean help
 .PHONY: packages-build packages-run packages-test packages-fuzz packages-format packages-platforms packages-bench
 .PHONY: ready-run ready-test python-run python-test python-dev python-bench python-charts python-farm python-scaling python-zig core-configured core-programs core-tests
 
@@ -88,6 +88,9 @@ core-programs: core-configured
 core-tests: core-programs
 	@$(call logged,build/ctest.log,ctest --test-dir $(core) -j $(JOBS) --output-on-failure)
 	@grep -E '^[0-9]+% tests passed|^Total Test time' build/ctest.log
+
+device-check: packages-fuzz ## compile the formulas and the records of kernels for a graphics processor
+	@sh core/device/check.sh
 
 sanitize: packages-test ## run the C++ tests under AddressSanitizer and UndefinedBehaviorSanitizer
 	@mkdir -p build

@@ -19,6 +19,7 @@ from .structs import (
     Error,
     Image,
     Light,
+    Made,
     Material,
     Mesh,
     Node,
@@ -35,6 +36,16 @@ UINT32_MAX = 0xFFFFFFFF
 _u32, _u64 = c_uint32, c_uint64
 # Argument types of the functions that return a lancer_status.
 _CALLS = {
+    "lancer_object_create_image": (POINTER(Image), _u32, POINTER(_u64)),
+    "lancer_object_create_mesh": (POINTER(Mesh), _u32, POINTER(_u64)),
+    "lancer_object_create_material": (POINTER(Material), _u32, _u32, _Array, POINTER(_u64)),
+    "lancer_object_create_light": (POINTER(Light), _u32, _u32, _Array, POINTER(_u64)),
+    "lancer_object_create_world": (POINTER(World), _u32, _Array, POINTER(_u64)),
+    "lancer_object_destroy": (_u64,),
+    "lancer_object_prepare": (_u64,),
+    "lancer_scene_edit": (_u64, POINTER(_u64)),
+    "lancer_scene_set_objects": (_u64, _u32, _u32, _Array),
+    "lancer_scene_clear_instances": (_u64,),
     "lancer_scene_create": (POINTER(_u64),),
     "lancer_scene_destroy": (_u64,),
     "lancer_scene_add_mesh": (_u64, POINTER(Mesh)),
@@ -75,6 +86,7 @@ _CALLS = {
     "lancer_session_read": (_u64, _u32, _Array, c_size_t),
     "lancer_session_statistics": (_u64, POINTER(Statistics)),
     "lancer_debug_sample": (_u64, _u32, _u32, _u32, _Array, _Array, _u32, POINTER(_u32)),
+    "lancer_probe_made": (_u64, POINTER(Made)),
     "lancer_probe_intersect": (_u64, _u32, _Array, _Array, _Array, _Array, _Array),
     "lancer_probe_occluded": (_u64, _u32, _Array, _Array, _Array, _Array, _Array),
     "lancer_probe_traversal": (_u64, _u32, _Array, _Array, _Array, _Array, _u32, _Array),

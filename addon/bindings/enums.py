@@ -5,7 +5,7 @@ Generated from core/include/lancer.h by `make bindings`; changes here are lost.
 
 from enum import IntEnum, IntFlag
 
-ABI_VERSION = 13
+ABI_VERSION = 14
 MOST_NODE_RAYS = 128
 MOST_NODES = 4096
 DEEPEST_RECURSION = 16
@@ -50,6 +50,7 @@ class Struct(IntEnum):
     RANGE = 22
     PART = 23
     PORTAL = 24
+    MADE = 25
 
 
 class NormalDomain(IntEnum):
@@ -530,6 +531,14 @@ class Falloff(IntEnum):
     QUADRATIC = 3
     SMOOTH = 4
     GAUSSIAN = 5
+
+
+class ObjectKind(IntEnum):
+    IMAGE = 0
+    MESH = 1
+    MATERIAL = 2
+    LIGHT = 3
+    WORLD = 4
 
 
 class Accelerator(IntEnum):

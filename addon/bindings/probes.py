@@ -26,6 +26,12 @@ def _count(*vectors, scalars=()):
 class SceneProbes:
     """Methods of a committed scene; require self.library and self.handle."""
 
+    def made(self):
+        """Return the abi.Made of the commit: the numbers of the parts that it made, by their names."""
+        made = abi.Made()
+        check(self.library.lancer_probe_made(self.handle, ctypes.byref(made)), self.library)
+        return {name: getattr(made, name) for name, _ in made._fields_}
+
     def intersect(self, origins, directions, tmin=0.0, tmax=np.inf):
         """Return the closest hits with tmin < t < tmax as records of lancer_hit."""
         count, rays = self._rays(origins, directions, tmin, tmax)

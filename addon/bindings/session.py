@@ -16,12 +16,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import abi, marshal
-from .abi import LancerError, Pass, Status, check, load_library
-from .blocks import Blocks
+from .abi import LancerError, ObjectKind, Pass, Status, check, load_library
 from .mapped_file import MappedPages
 from .parts import SessionParts
 from .probes import SceneProbes, SessionProbes, microfacet, pixel_filter, sampler
 from .snapshot import InstanceTable
+from .stock import Stock, file_of, key_of
 
 __all__ = [
     "Cancelled",
@@ -131,6 +131,10 @@ class _Handle:
     def close(self):
         self._finalizer()
 
+    @property
+    def is_open(self):
+        return self._finalizer.alive
+
     def __enter__(self):
         return self
 
@@ -142,18 +146,29 @@ class _Handle:
 
 
 class Scene(_Handle, SceneProbes):
-    """A scene in the library: create, fill, commit; upload() does all three."""
+    """A scene in the library: create, fill, commit; upload() does all three.
 
-    def __init__(self, library=None):
-        library = library or load_library()
+    before: a committed scene that differs little; the commit makes only the parts that differ. Both may be closed in any order.
+    stock: the Stock of the scenes that share objects; a scene without one shares those of before, or none.
+    """
+
+    def __init__(self, library=None, before=None, stock=None):
         handle = ctypes.c_uint64()
-        check(library.lancer_scene_create(ctypes.byref(handle)), library)
+        if before is None:
+            library = library or load_library()
+            check(library.lancer_scene_create(ctypes.byref(handle)), library)
+        else:
+            library = before.library
+            check(library.lancer_scene_edit(before.handle, ctypes.byref(handle)), library)
         self._own(library, library.lancer_scene_destroy, handle.value, MappedPages())
+        self._stock = stock or (Stock() if before is None else before._stock)
+        self._parts = []
+        self._instances = None if before is None else before._instances
 
     @classmethod
-    def upload(cls, snapshot, library=None, poll=None, release=False):
+    def upload(cls, snapshot, library=None, poll=None, release=False, before=None, stock=None):
         """Return a committed scene with the accelerator and threads of the snapshot's settings. release: see fill."""
-        scene = cls(library)
+        scene = cls(library, before, stock)
         try:
             scene.fill(snapshot, poll, release)
             scene.commit(snapshot.settings.accelerator, snapshot.settings.threads, poll)
@@ -165,44 +180,66 @@ class Scene(_Handle, SceneProbes):
     def fill(self, snapshot, poll=None, release=False):
         """Copy the snapshot into the library, which reads Blocks in place.
 
-        release: remove each part from the snapshot when copied, to save memory.
+        release: remove each part from the snapshot when copied, to save memory; it is not known again.
         """
         for _ in self.filling(snapshot, release):
             _obey(poll)
 
     def filling(self, snapshot, release=False):
-        """Run fill() in steps: yield after each copied record, so that the caller can poll."""
-        library, handle = self.library, self.handle
-        # Materials refer to images: add images first.
-        for add, to_struct, name in (
-            (library.lancer_scene_add_image, marshal.image, "images"),
-            (library.lancer_scene_add_mesh, marshal.mesh, "meshes"),
-            (library.lancer_scene_add_material, marshal.material, "materials"),
-            (library.lancer_scene_add_light, marshal.light, "lights"),
-        ):
-            records = list(reversed(getattr(snapshot, name)))
-            if release:
-                snapshot.set(name, ())
-            while records:
-                # The struct holds addresses of the record's arrays: keep the record until the call returns.
-                record = records.pop()
-                if name == "images" and isinstance(record.texels, Blocks):
-                    self.pages.add(record.texels.file)
-                self._check(add(handle, ctypes.byref(to_struct(record))))
-                yield
-            record = None
-        self._check(library.lancer_scene_set_world(handle, ctypes.byref(marshal.world(snapshot.world))))
-        yield
-        if len(snapshot.instances):
-            self._check(library.lancer_scene_add_instances(handle, *marshal.instances(snapshot.instances)))
-            if snapshot.instances.infos is not None:
-                infos = snapshot.instances.infos
-                self._check(library.lancer_scene_set_object_infos(handle, len(infos), infos.ctypes.data))
-            for attribute in snapshot.instances.attributes:
-                self._check(library.lancer_scene_add_object_attribute(handle, *marshal.object_attribute(attribute)))
+        """Run fill() in steps: yield after each record that was copied, so that the caller can poll."""
+        images = yield from self._set(ObjectKind.IMAGE, snapshot, "images", (), release)
+        yield from self._set(ObjectKind.MESH, snapshot, "meshes", (), release)
+        yield from self._set(ObjectKind.MATERIAL, snapshot, "materials", images, release)
+        yield from self._set(ObjectKind.LIGHT, snapshot, "lights", images, release)
+        world, made = self._stock.part(self.library, ObjectKind.WORLD, snapshot.world, 0, images, not release)
+        self._give(ObjectKind.WORLD, [world])
+        if made:
+            yield
+        if snapshot.instances is not self._instances:
+            self._set_instances(snapshot.instances)
+            self._instances = snapshot.instances
             yield
         if release:
             snapshot.set("instances", InstanceTable())
+            self._instances = None
+
+    def _set(self, kind, snapshot, name, images, release):
+        """Give the scene the objects of one kind; yield after each that was made, and return all Parts."""
+        records = list(reversed(getattr(snapshot, name)))
+        if release:
+            snapshot.set(name, ())
+        parts = []
+        while records:
+            # The struct holds addresses of the record's arrays: keep the record until it is copied.
+            record = records.pop()
+            if kind == ObjectKind.IMAGE and file_of(record) is not None:
+                self.pages.add(file_of(record))
+            part, made = self._stock.part(self.library, kind, record, len(parts), images, not release)
+            parts.append(part)
+            if made:
+                yield
+        self._give(kind, parts)
+        return parts
+
+    def _give(self, kind, parts):
+        handles = np.array([part.handle for part in parts], np.uint64)
+        self._check(self.library.lancer_scene_set_objects(self.handle, int(kind), len(handles), handles.ctypes.data))
+        self._parts.extend(parts)
+
+    def _set_instances(self, table):
+        self._check(self.library.lancer_scene_clear_instances(self.handle))
+        if not len(table):
+            return
+        self._check(self.library.lancer_scene_add_instances(self.handle, *marshal.instances(table)))
+        if table.infos is not None:
+            self._check(self.library.lancer_scene_set_object_infos(self.handle, len(table.infos), table.infos.ctypes.data))
+        for attribute in table.attributes:
+            self._check(self.library.lancer_scene_add_object_attribute(self.handle, *marshal.object_attribute(attribute)))
+
+    def likeness(self, snapshot):
+        """Return how many meshes of a snapshot may be those of this scene, by name and size."""
+        known = {part.key for part in self._parts}
+        return sum(key_of(ObjectKind.MESH, mesh) in known for mesh in snapshot.meshes)
 
     def set_digest(self, digest):
         """Name the scene in parts of pictures: 32 bytes of bindings.digest.scene_digest."""
@@ -263,9 +300,9 @@ class Session(_Handle, SessionParts, SessionProbes):
         return session
 
     @classmethod
-    def upload(cls, snapshot, library=None, poll=None, release=False):
+    def upload(cls, snapshot, library=None, poll=None, release=False, before=None, stock=None):
         """Create the scene and the session of a snapshot; close() frees both. release: see Scene.fill."""
-        scene = Scene.upload(snapshot, library, poll, release)
+        scene = Scene.upload(snapshot, library, poll, release, before, stock)
         try:
             session = cls(scene, snapshot.camera, snapshot.settings)
         except BaseException:

@@ -430,6 +430,21 @@ class Hit(Structure):
     ]
 
 
+class Made(Structure):
+    """The parts that a scene's commit made; it took all others from the objects or from the scene before."""
+
+    _fields_ = [
+        ("placements", c_uint32),
+        ("mesh_trees", c_uint32),
+        ("triangles", c_uint32),
+        ("changed_meshes", c_uint32),
+        ("materials", c_uint32),
+        ("emitters", c_uint32),
+        ("skies", c_uint32),
+        ("plane_searches", c_uint32),
+    ]
+
+
 class BsdfSample(Structure):
     _fields_ = [
         ("wi", c_float * 3),
@@ -490,6 +505,7 @@ STRUCTS = {
     Struct.RANGE: Range,
     Struct.PART: Part,
     Struct.PORTAL: Portal,
+    Struct.MADE: Made,
 }
 
 # Kind and default of each parameter, from lancer.h.

@@ -48,6 +48,10 @@ def _pass(source, kind):
     return RenderPass(named.name if _LONG_NAMES else named.short, named.channels, kind, source)
 
 
+# The passes of a picture alone.
+COMBINED = (_pass(Pass.COMBINED, "COLOR"),)
+
+
 def render_passes(scene, view_layer):
     """Yield the passes that a view layer requests."""
     yield _pass(Pass.COMBINED, "COLOR")

@@ -10,11 +10,11 @@ import bpy
 from bpy.app.handlers import persistent
 
 from ..bindings.abi import LancerError
-from ..bindings.session import Cancelled, Session
+from ..bindings.session import Cancelled, Scene, Session
 from ..denoise import view_layer as denoise
 from ..export.kept import Kept
 from ..export.scene import ExportOptions, export_scene
-from ..host import main_thread, redraw
+from ..host import main_thread, redraw, shared_scenes
 from ..host.by_scene import ByScene
 from ..host.priority import lowered
 from ..measure import render_report
@@ -23,7 +23,7 @@ from ..measure.schedule import SAMPLES, TARGET, TIME, Schedule, TimeShare
 from ..messages.messages import Messages
 from ..messages.severity import Severity
 from ..viewport.viewport import Viewport
-from . import many_machines, passes, preview, render_export, render_job
+from . import first_look, many_machines, passes, preview, render_export, render_job
 from .denoising import Denoising, wishes
 from .picture import Picture
 from .quick_check import quick_check
@@ -63,6 +63,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
     _picture = None
     _uses = ()
     _gave_up = False
+    _ahead = None  # the shared_scenes.Ahead of the export
     _viewport = None
 
     def update_render_passes(self, scene=None, renderlayer=None):
@@ -93,7 +94,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
                 # is invalid from here on.
                 self.free_blender_memory()
                 self._guarded(scene, self._render, scene, layer, wanted, denoising, machines)
-            self._snapshot = None
+            self._snapshot = self._ahead = None
             if self._is_over():
                 # The remaining layers are not rendered.
                 self._picture = None
@@ -179,7 +180,9 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             # Report it before the render takes its time.
             self._tell(scene, Messages([denoise.missing()]))
         wanted = tuple(passes.render_passes(scene, view_layer))
-        options = ExportOptions(self.camera_override, passes.sources(wanted), _kept.get(scene))
+        self._ahead = shared_scenes.Ahead()
+        begin = self._ahead.mesh if many_machines.wanted(scene) is None and scene.lancer.accelerator == "BVH" else None
+        options = ExportOptions(self.camera_override, passes.sources(wanted), _kept.get(scene), begin)
         self._snapshot, messages = export_scene(depsgraph, options, self._is_over)
         settings = self._snapshot.settings
         settings = dataclasses.replace(settings, time_limit=self._picture.limit(settings.time_limit))
@@ -190,15 +193,30 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         self._tell(scene, messages)
         self._tell(scene, quick_check(scene, self._snapshot, self._is_over))
 
-    def _opened(self, machines):
+    def _opened(self, scene, layer, machines):
         """Return a context of the session that renders the snapshot: on this machine, or on others."""
         if machines is not None:
             return many_machines.opened(machines, self._snapshot, self._is_over, lambda text: self.update_stats("", text))
         self.update_stats("", "Building the scene")
-        return lowered(lambda: Session.upload(self._snapshot, poll=self._is_over, release=True))
+        return lowered(lambda: self._uploaded(scene, layer))
+
+    def _uploaded(self, scene, layer):
+        """Return a Session that owns its scene, unless the scene is kept for the next frame."""
+        kept, snapshot = _kept.get(scene), self._snapshot
+        before = (kept and kept.scenes.get(layer)) or shared_scenes.nearest(snapshot)
+        given = {"poll": self._is_over, "before": before, "stock": shared_scenes.stock}
+        if kept is None:
+            session = Session.upload(snapshot, release=True, **given)
+            self._ahead.end()
+            shared_scenes.remember(session.scene)
+            return session
+        uploaded = Scene.upload(snapshot, **given)
+        kept.keep_scene(layer, uploaded)
+        shared_scenes.remember(uploaded)
+        return Session(uploaded, snapshot.camera, snapshot.settings)
 
     def _render(self, scene, layer, wanted, denoising, machines):
-        with self._opened(machines) as session:
+        with self._opened(scene, layer, machines) as session:
             # The library has its own copy.
             self._snapshot = None
             self._tell(scene, Messages.of_library(session.messages()))
@@ -213,6 +231,8 @@ class LancerRenderEngine(bpy.types.RenderEngine):
                 passes.fill(result.layers[0], session.read, wanted)
                 self.update_result(result)
 
+            if not self.is_animation:
+                self._show_coarse(result, session)
             denoiser = denoising and Denoising(session, denoising, self._is_over, lambda text: self.update_stats("", text))
             schedule = Schedule(session, self._picture.started, denoiser.bound if denoiser and denoising.of_target else None)
             try:
@@ -230,6 +250,13 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             finally:
                 # Keep the unfinished picture, after Esc too.
                 self.end_result(result)
+
+    def _show_coarse(self, result, session):
+        """Show a picture of large pixels, so that something is there at once."""
+        picture = first_look.coarse_picture(session, self._is_over)
+        if picture is not None:
+            passes.fill(result.layers[0], lambda _: picture, passes.COMBINED)
+            self.update_result(result)
 
     def _run(self, schedule, show):
         """Render range by range and show the picture at intervals, until the schedule ends or the user cancels."""

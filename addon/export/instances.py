@@ -61,20 +61,17 @@ class Instances:
     There may be millions of entries: only numbers are stored for each, and all matrices are read in one call.
     """
 
-    def __init__(self, depsgraph, materials, messages, shaders, divider, kept=None, parts=None, space=None):
-        """shaders: the ShaderCache of lamps. divider: a subdivision.Divider.
-
-        space: a SpaceView3D, whose local view and filters exclude objects.
-        """
+    def __init__(self, depsgraph, materials, messages, shaders, divider, options):
+        """shaders: the ShaderCache of lamps. divider: a subdivision.Divider. options: the ExportOptions."""
         self.depsgraph = depsgraph
         self.messages = messages
         self.lights = []
         self.has_lamp_instances = False
-        self._space = space
+        self._space = options.space
         self._shaders = shaders
         self._reader = AttributeReader(depsgraph, sees_all=False)
         self._divider = divider
-        self._objects = Objects(depsgraph, materials, messages, divider, kept, parts)
+        self._objects = Objects(depsgraph, materials, messages, divider, options)
         self._rows = {}
         self._narrowed = {}
         self._checked_hair = set()

@@ -36,6 +36,7 @@ class Kept:
 
     def __init__(self):
         self._entries = {}
+        self.scenes = {}  # the library's Scene of each view layer, from which the next picture takes what is the same
         self.counts = {}
         self.next_picture()
 
@@ -48,6 +49,13 @@ class Kept:
             if not left:
                 del self._entries[key]
         self.counts = {"read_meshes": 0, "kept_meshes": 0, "read_images": 0, "kept_images": 0}
+
+    def keep_scene(self, layer, scene):
+        """Keep the library's Scene of a view layer instead of that of the picture before."""
+        before = self.scenes.get(layer)
+        self.scenes[layer] = scene
+        if before is not None:
+            before.close()
 
     @property
     def bytes(self):

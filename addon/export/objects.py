@@ -38,11 +38,12 @@ class Look(NamedTuple):
 class Objects:
     """Reads each object once; meshes, looks and placements are lists indexed by their numbers."""
 
-    def __init__(self, depsgraph, materials, messages, divider, kept=None, parts=None):
-        """kept: the Kept of earlier frames; parts: the Parts of earlier exports for a window."""
-        self._parts = parts
+    def __init__(self, depsgraph, materials, messages, divider, options):
+        """options: the ExportOptions."""
+        self._parts = options.parts
+        self._on_mesh = options.on_mesh
         self._divider = divider
-        self._export_mesh = export_mesh if kept is None else kept.meshes(export_mesh)
+        self._export_mesh = export_mesh if options.kept is None else options.kept.meshes(export_mesh)
         self.scene = depsgraph.scene
         self.view_layer = depsgraph.view_layer
         self.materials = materials
@@ -149,6 +150,8 @@ class Objects:
             if len(data.triangles):
                 self.meshes.append(data)
                 number = len(self.meshes) - 1
+                if self._on_mesh is not None:
+                    self._on_mesh(data)
             found = wanted, number, used
             copies.append(found)
         _, number, used = found

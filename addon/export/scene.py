@@ -24,6 +24,7 @@ class ExportOptions:
     camera: object = None  # the camera object; None is the scene's
     passes: tuple = (Pass.COMBINED,)
     kept: object = None  # the Kept of earlier frames
+    on_mesh: object = None  # is called with each MeshData as soon as it is read
     is_preview: bool = False  # of a material, a world or a lamp
     # For a window:
     view: object = None  # a snapshot.Camera that replaces the camera object
@@ -70,7 +71,7 @@ def export_scene(depsgraph, options=None, poll=None):
     materials = Materials(messages, override, images, depsgraph, shaders)
     in_view = options.view is not None
     divider = Divider(depsgraph, options.dicing if in_view else camera, messages, in_view)
-    instances = Instances(depsgraph, materials, messages, shaders, divider, options.kept, parts, options.space)
+    instances = Instances(depsgraph, materials, messages, shaders, divider, options)
     instances.collect(obey)
 
     def read_sky(messages, images, value):

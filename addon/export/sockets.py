@@ -17,6 +17,9 @@ SMALLEST_IOR = 1e-5  # Cycles clamps to it
 
 _MUTED_OUTPUTS_ARE_OFF = bpy.app.version < (5, 0)
 
+# Node types of which every input has its identifier as its name.
+_NAMED_BY_IDENTIFIER = {"ShaderNodeBsdfPrincipled"}
+
 # Socket identifiers of the Principled BSDF, newest first; versions may lack some.
 PRINCIPLED = {
     "base_color": ("Base Color",),
@@ -51,8 +54,17 @@ PRINCIPLED = {
 
 def find(node, identifiers):
     """Return the first enabled input with one of the identifiers; None if this Blender has none."""
+    inputs = node.inputs
     for identifier in identifiers:
-        for socket in node.inputs:
+        # Most sockets have their identifier as their name, by which Blender finds them at once.
+        named = inputs.get(identifier)
+        if named is not None and named.identifier == identifier:
+            if named.enabled:
+                return named
+            continue
+        if named is None and node.bl_idname in _NAMED_BY_IDENTIFIER:
+            continue
+        for socket in inputs:
             if socket.identifier == identifier and socket.enabled:
                 return socket
     return None

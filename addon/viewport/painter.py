@@ -18,7 +18,7 @@ from ..bindings.session import PictureError, Scene, Session
 from ..bindings.snapshot import SceneSnapshot, Settings
 from ..denoise import view_layer as denoise
 from ..export.view import View
-from ..host import priority
+from ..host import priority, shared_scenes
 from ..measure.schedule import Schedule, TimeShare
 from .cleaner import GUIDES, Cleaner
 from .sizes import PixelSizes
@@ -141,9 +141,9 @@ class Painter:
             self._scene = None
 
     def _build(self, wanted):
-        # Free the old scene first: two scenes would take twice the memory.
-        self._drop()
-        scene, contents = Scene(), wanted.contents
+        contents = wanted.contents
+        before = self._scene or shared_scenes.nearest(contents)
+        scene = Scene(before=before, stock=shared_scenes.stock)
         try:
             yield from self._filled(scene, contents)
             settings = contents.settings
@@ -153,8 +153,10 @@ class Painter:
         except BaseException:
             scene.close()
             raise
+        self._drop()
         self.messages, self.failure = scene.messages(), ""
         self._scene, self._contents = scene, contents
+        shared_scenes.remember(scene)
 
     @staticmethod
     def _filled(scene, contents):

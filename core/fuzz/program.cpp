@@ -2,6 +2,7 @@
 
 #include "checked.h"
 #include "looks.h"
+#include "objects.h"
 #include "parts.h"
 #include "probes.h"
 
@@ -17,6 +18,8 @@ namespace {
 // The bytes that select a call for parts. They hardly occur where files from before there were parts select a call, so that
 // these keep their meaning: others select by their remainder.
 constexpr uint8_t kFirstOfParts = 240, kLastOfParts = 245;
+// Of objects and edits, likewise.
+constexpr uint8_t kObject = 246, kEdit = 247, kChange = 248;
 
 constexpr uint32_t kMostCalls = 40, kMostScenes = 2, kMostSessions = 3, kMostRanges = 5, kMostRefinements = 4, kMostThings = 16;
 
@@ -24,7 +27,7 @@ constexpr uint32_t kMostCalls = 40, kMostScenes = 2, kMostSessions = 3, kMostRan
 // with every compiler.
 class Program {
 public:
-  Program(const uint8_t *data, size_t size) : bytes_(data, size), records_(bytes_), parts_(bytes_, records_, sessions_) {}
+  Program(const uint8_t *data, size_t size) : bytes_(data, size), records_(bytes_), parts_(bytes_, records_, sessions_), objects_(bytes_, records_, scenes_) {}
 
   void run() {
     for (uint32_t i = 0; i < kMostCalls && bytes_.any(); ++i)
@@ -45,6 +48,12 @@ private:
     const uint8_t b = bytes_.byte();
     if (b >= kFirstOfParts && b <= kLastOfParts)
       return b == kFirstOfParts ? create_session_of_parts() : parts_.call();
+    if (b == kObject)
+      return objects_.call();
+    if (b == kEdit)
+      return objects_.edit(handle_of(scenes_), kMostScenes);
+    if (b == kChange)
+      return objects_.change(handle_of(scenes_));
     switch (b % 24) {
     case 0:
       return create_scene();
@@ -306,6 +315,7 @@ private:
   std::vector<SceneState> scenes_;
   std::vector<SessionState> sessions_;
   Parts parts_;
+  Objects objects_;
   uint64_t gone_ = 7;
   uint32_t refinements_ = 0;
   uint32_t ranges_ = 0;

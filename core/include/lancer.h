@@ -32,7 +32,7 @@ extern "C" {
 #endif
 
 /* Incremented with each change of a struct or a call of this header. */
-#define LANCER_ABI_VERSION 13u
+#define LANCER_ABI_VERSION 14u
 
 /* Limits: nodes of a material or world; recursion of CLASSIC, in which glass doubles the rays with every depth. */
 #define LANCER_MOST_NODE_RAYS 128u /* of an OCCLUSION or a BEVEL */
@@ -88,6 +88,7 @@ typedef enum lancer_struct {
   LANCER_STRUCT_RANGE,
   LANCER_STRUCT_PART,
   LANCER_STRUCT_PORTAL,
+  LANCER_STRUCT_MADE,
   LANCER_STRUCT_COUNT
 } lancer_struct;
 /* Returns sizeof the struct with this lancer_struct number, or 0 for an unknown number, so that a caller can refuse a stale
@@ -896,8 +897,46 @@ typedef struct lancer_world {
 /* The world is black until set. */
 LANCER_API lancer_status lancer_scene_set_world(lancer_scene scene, const lancer_world *world);
 
+/* ---- objects: parts of scenes that many scenes share, and scenes that differ little -------------------------------- */
+
+/* An object is a checked copy of one record that never changes: a mesh, an image, a material, a light or a world. Any number of
+ * scenes share it, with all that their commits make of it, such as a mesh's tree. The caller owns the handle; the object lives
+ * until its handle is destroyed and no scene, session or other object needs it. */
+typedef uint64_t lancer_object;
+enum lancer_object_kind {
+  LANCER_OBJECT_IMAGE = 0,
+  LANCER_OBJECT_MESH = 1,
+  LANCER_OBJECT_MATERIAL = 2,
+  LANCER_OBJECT_LIGHT = 3,
+  LANCER_OBJECT_WORLD = 4
+};
+/* number: names an object without a name in messages. */
+LANCER_API lancer_status lancer_object_create_image(const lancer_image *image, uint32_t number, lancer_object *object);
+LANCER_API lancer_status lancer_object_create_mesh(const lancer_mesh *mesh, uint32_t number, lancer_object *object);
+/* images[image_count]: the images that nodes name by number; the object keeps those that its nodes read. */
+LANCER_API lancer_status lancer_object_create_material(const lancer_material *material, uint32_t number, uint32_t image_count,
+                                                       const lancer_object *images, lancer_object *object);
+LANCER_API lancer_status lancer_object_create_light(const lancer_light *light, uint32_t number, uint32_t image_count,
+                                                    const lancer_object *images, lancer_object *object);
+LANCER_API lancer_status lancer_object_create_world(const lancer_world *world, uint32_t image_count, const lancer_object *images,
+                                                    lancer_object *object);
+LANCER_API lancer_status lancer_object_destroy(lancer_object object);
+/* Begins, in a thread of the library, with the work that a commit would do for this object alone: the tree of a mesh. So it goes
+ * on while the caller still reads others. It is left out if nobody has the object any more when its turn comes. */
+LANCER_API lancer_status lancer_object_prepare(lancer_object object);
+
+/* Creates a scene that begins with all that a committed scene has, for changes. Its commit makes only the parts that differ and
+ * shares all others, and its pictures have the bits of a scene that is filled anew. before may be destroyed at once. */
+LANCER_API lancer_status lancer_scene_edit(lancer_scene before, lancer_scene *scene);
+/* Replaces all objects of a kind, which are numbered 0, 1, 2 ... in this order. One world, or none: black. */
+LANCER_API lancer_status lancer_scene_set_objects(lancer_scene scene, uint32_t kind, uint32_t count,
+                                                  const lancer_object *objects);
+/* Removes all instances with their infos and attributes. */
+LANCER_API lancer_status lancer_scene_clear_instances(lancer_scene scene);
+
 enum lancer_accelerator { LANCER_BVH = 0, LANCER_KDTREE = 1, LANCER_BRUTE_FORCE = 2 };
-/* Starts the commit on threads threads (0 = one per processor): checks, normalises, finds features, builds the accelerator.
+/* Starts the commit on threads threads (0 = one per processor): checks, normalises, finds features, builds the accelerator. An
+ * instance that refers to a mesh or a material that is not there is an error.
  * Can be called once. */
 LANCER_API lancer_status lancer_scene_commit(lancer_scene scene, uint32_t accelerator, uint32_t threads);
 /* Waits at most this time. LANCER_OK: committed, ready for sessions. */

@@ -44,7 +44,7 @@ uint32_t lancer_sizeof(uint32_t which) {
       sizeof(lancer_light_sample), sizeof(lancer_bsdf_sample),    sizeof(lancer_attribute), sizeof(lancer_image),
       sizeof(lancer_node),         sizeof(lancer_principled),     sizeof(lancer_world),     sizeof(lancer_lobe_info),
       sizeof(lancer_error),        sizeof(lancer_denoised_error), sizeof(lancer_range),     sizeof(lancer_part),
-      sizeof(lancer_portal)};
+      sizeof(lancer_portal),       sizeof(lancer_made)};
   return which < LANCER_STRUCT_COUNT ? uint32_t(sizes[which]) : 0;
 }
 
@@ -99,9 +99,7 @@ lancer_status lancer_scene_add_object_attribute(lancer_scene scene, const char *
 
 lancer_status lancer_scene_add_image(lancer_scene scene, const lancer_image *image) {
   return fill_scene(scene, image, "image", [&](Description &description) {
-    add_image(description, *image);
-    if (!description.images.back().blocks)
-      make_mipmaps(description.images.back());
+    description.images.push_back(given_image(*image, description.images.size()));
   });
 }
 
@@ -111,13 +109,12 @@ lancer_status lancer_make_mipmaps(const lancer_image *image, void *levels) {
     require(levels, "levels");
     lancer_image source = *image;
     source.mipmaps = 1;
-    Description description;
-    add_image(description, source);
-    Image &made = description.images.back();
-    if (made.blocks)
+    Messages messages;
+    Image made = read_image(source, 0, messages);
+    if (made.in_blocks)
       bad_argument("image: levels are made of rows, not of blocks");
     make_mipmaps(made);
-    std::memcpy(levels, made.texels.get() + made.level_offset(1), made.bytes() - made.level_offset(1));
+    std::memcpy(levels, made.texels + made.level_offset(1), made.bytes() - made.level_offset(1));
     return LANCER_OK;
   });
 }
@@ -135,16 +132,20 @@ lancer_status lancer_scene_commit(lancer_scene scene, uint32_t accelerator, uint
       bad_argument("scene: accelerator " + std::to_string(accelerator) + " is not one of 0, 1, 2");
     if (threads > 1024)
       bad_argument("scene: threads " + std::to_string(threads) + " > 1024");
-    object->messages = object->description.messages.text();
+    object->messages = object->description.messages();
     BuildContext context;
     context.threads = ThreadPool::resolved(threads);
     context.cancel = &object->cancel;
+    context.made = &object->made;
+    check_references(object->description);
     object->builder = std::make_unique<ThreadPool>(1);
     object->cancel = false;
     // The object owns the thread, so the pointer is valid for as long as the thread works.
     SceneObject *const target = object.get();
     object->builder->start([target, accelerator, context](uint32_t) {
-      target->scene = commit(std::move(target->description), static_cast<AcceleratorKind>(accelerator), context);
+      target->scene =
+          commit(target->description, static_cast<AcceleratorKind>(accelerator), context, target->before.get());
+      target->before.reset();
     });
     // Change the state only after the thread has started: if memory is missing, no commit is running.
     object->state = SceneObject::State::Committing;
@@ -192,7 +193,7 @@ lancer_status lancer_scene_messages(lancer_scene scene, char *text, size_t size,
     if (object->state == SceneObject::State::Committing)
       throw Error(Fault::State, "scene: wait for its commit first");
     const std::string messages =
-        object->state == SceneObject::State::Filling ? object->description.messages.text() : object->messages;
+        object->state == SceneObject::State::Filling ? object->description.messages() : object->messages;
     if (needed)
       *needed = messages.size() + 1;
     if (size) {

@@ -188,7 +188,7 @@ lancer_status lancer_session_statistics(lancer_session session, lancer_statistic
       return LANCER_OK;
     const Scene &scene = object->session.scene();
     statistics->build_seconds = scene.build_seconds;
-    statistics->triangles = scene.triangles;
+    statistics->triangles = scene.placed->triangles;
     statistics->instances = scene.geometry.instances.size();
     statistics->lights = scene.lights.size();
     statistics->geometry_bytes = scene.geometry_bytes();

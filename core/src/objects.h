@@ -2,6 +2,7 @@
 #pragma once
 
 #include "lancer.h"
+#include "nodes/mipmaps.h"
 #include "render/session.h"
 #include "scene/fill.h"
 #include "scene/messages.h"
@@ -17,6 +18,7 @@
 #include <new>
 #include <system_error>
 #include <unordered_map>
+#include <variant>
 
 namespace lancer {
 
@@ -129,13 +131,27 @@ private:
   uint64_t next_;
 };
 
+// A part of scenes.
+using PartObject = std::variant<Given<Image>, Given<Mesh>, Given<Material>, Given<LightDescription>, Given<World>>;
+
+// Reads an image with its levels.
+inline Given<Image> given_image(const lancer_image &source, size_t number) {
+  Messages messages;
+  Image image = read_image(source, number, messages);
+  if (!image.in_blocks)
+    make_mipmaps(image);
+  return Given<Image>(std::move(image), std::move(messages));
+}
+
 class SceneObject {
 public:
   ~SceneObject() { cancel = true; }
 
   std::mutex mutex;
   Description description;
-  std::shared_ptr<const Scene> scene; // set by commit
+  std::shared_ptr<const Scene> before; // from which the next commit takes what is the same; may be null
+  std::shared_ptr<const Scene> scene;  // set by commit
+  MadeCounts made;                     // by the commit
   std::string messages;
   std::array<uint8_t, 32> digest{};
   bool has_digest = false;
@@ -168,6 +184,10 @@ inline Handles<SceneObject> &scenes() {
   static auto *const handles = new Handles<SceneObject>(0x5c);
   return *handles;
 }
+inline Handles<const PartObject> &parts() {
+  static auto *const handles = new Handles<const PartObject>(0x0b);
+  return *handles;
+}
 inline Handles<SessionObject> &sessions() {
   static auto *const handles = new Handles<SessionObject>(0x5e);
   return *handles;
@@ -183,6 +203,13 @@ inline std::shared_ptr<SessionObject> session_of(lancer_session handle) {
   auto object = sessions().find(handle);
   if (!object)
     throw BadHandle{"session: no such session, or it has been destroyed"};
+  return object;
+}
+
+inline std::shared_ptr<const PartObject> part_of(lancer_object handle) {
+  auto object = parts().find(handle);
+  if (!object)
+    throw BadHandle{"object: no such object, or it has been destroyed"};
   return object;
 }
 

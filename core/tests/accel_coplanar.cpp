@@ -166,13 +166,16 @@ std::vector<Scene> scenes(Random &random, double scale) {
 
 struct Rule {
   std::string name;
-  std::unique_ptr<Accelerator> accelerator;
+  std::shared_ptr<const Accelerator> accelerator;
 };
 
 std::vector<Rule> all_with_rule(const Scene &scene) {
   const PlaneRules rules{glm::dvec3(0.0), scene.transparent_instances};
   std::vector<Rule> all;
-  const auto build = [&](AcceleratorKind kind) { return build_accelerator(kind, scene.geometry, rules, {2, nullptr}); };
+  const BuildContext context{2, nullptr};
+  const auto build = [&](AcceleratorKind kind) {
+    return order_coplanar_faces(build_accelerator(kind, scene.geometry, context), scene.geometry, rules, context);
+  };
   all.push_back({"brute force", build(AcceleratorKind::BruteForce)});
   all.push_back({"kd-tree", build(AcceleratorKind::KdTree)});
   for (const char *instruction_set : {"sse4", "avx2", "avx512"}) {

@@ -100,8 +100,9 @@ TEST_P(CoverTest, WhatLiesOnAFaceIsMetWhereItIs) {
   for (const ShapeKind kind : {ShapeKind::Mesh, ShapeKind::Plane})
     for (const bool large_first : {false, true}) {
       const Tiles tiles(random, GetParam(), kind, large_first);
-      const PlaneRules rules;
-      const auto accelerator = build_accelerator(AcceleratorKind::Bvh, tiles.geometry, rules, {1, nullptr});
+      const BuildContext context{1, nullptr};
+      const auto accelerator = order_coplanar_faces(build_accelerator(AcceleratorKind::Bvh, tiles.geometry, context),
+                                                    tiles.geometry, PlaneRules{}, context);
       std::vector<Ray> rays;
       std::vector<Place> places;
       while (rays.size() < 20000) {

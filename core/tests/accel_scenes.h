@@ -3,6 +3,7 @@
 
 #include "accel/accelerator.h"
 #include "forced_instruction_set.h"
+#include "geometry_lab.h"
 
 #include <cmath>
 #include <cstdlib>

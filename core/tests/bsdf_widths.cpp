@@ -118,7 +118,7 @@ TEST(BsdfWidths, SeveralLobes) {
 
 // Materials whose facets are planned ahead.
 // covered: they have a film.
-ReadyLobe planned(Random &random, const Code &code, bool covered) {
+ReadyLobes planned(Random &random, const Code &code, bool covered) {
   const Described from = described(random, code, {0.0f, 0.0f, 1.0f});
   Material material;
   LobeDescription &lobe = material.lobes.emplace_back();
@@ -135,24 +135,24 @@ ReadyLobe planned(Random &random, const Code &code, bool covered) {
   lobe.film_thickness = Parameter{film};
   lobe.film_ior = Parameter{glm::vec3(from.lobe.film_ior)};
   const auto share = [&] { return Parameter{glm::vec3(0.1f + 0.8f * random.uniform())}; };
-  auto p = std::make_shared<PrincipledDescription>();
-  p->rules = code.rules;
-  p->distribution = code.distribution;
-  p->option = code.option;
-  p->base_color = Parameter{from.layers.base_color};
-  p->metallic = share();
-  p->transmission = share();
-  p->coat = share();
-  p->roughness = Parameter{glm::vec3(from.layers.roughness)};
-  p->coat_roughness = Parameter{glm::vec3(from.layers.coat_roughness)};
-  p->ior = Parameter{glm::vec3(1.1f + random.uniform())};
-  p->specular = Parameter{glm::vec3(from.layers.specular)};
-  p->specular_tint = Parameter{from.layers.specular_tint};
-  p->film_thickness = Parameter{film};
-  p->film_ior = Parameter{glm::vec3(from.layers.film_ior)};
+  PrincipledDescription p;
+  p.rules = code.rules;
+  p.distribution = code.distribution;
+  p.option = code.option;
+  p.base_color = Parameter{from.layers.base_color};
+  p.metallic = share();
+  p.transmission = share();
+  p.coat = share();
+  p.roughness = Parameter{glm::vec3(from.layers.roughness)};
+  p.coat_roughness = Parameter{glm::vec3(from.layers.coat_roughness)};
+  p.ior = Parameter{glm::vec3(1.1f + random.uniform())};
+  p.specular = Parameter{glm::vec3(from.layers.specular)};
+  p.specular_tint = Parameter{from.layers.specular_tint};
+  p.film_thickness = Parameter{film};
+  p.film_ior = Parameter{glm::vec3(from.layers.film_ior)};
   if (code.kind == LobeKind::Principled)
-    lobe.principled = std::move(p);
-  return make_ready_lobes(material)[0];
+    lobe.principled = p;
+  return make_ready_lobes(material);
 }
 
 TEST(BsdfWidths, LobesThatArePlanned) {
@@ -165,19 +165,19 @@ TEST(BsdfWidths, LobesThatArePlanned) {
     int samples = 0;
     for (int k = 0; k < 40; ++k) {
       Place places[kLanes];
-      std::vector<ReadyLobe> ready;
+      std::vector<ReadyLobes> ready;
       for (Place &at : places) {
         at = place(random);
         ready.push_back(planned(random, code, k % 2 != 0));
       }
-      for (const ReadyLobe &one : ready) {
-        ASSERT_EQ(one.code(), ready[0].code());
-        ASSERT_TRUE(one.has(PrincipledLayer::Gloss));
+      for (const ReadyLobes &one : ready) {
+        ASSERT_EQ(one[0].code(), ready[0][0].code());
+        ASSERT_TRUE(one[0].has(PrincipledLayer::Gloss));
       }
       // Every third surface is of one material.
       const ReadyLobe *of[kLanes];
       for (int i = 0; i < kLanes; ++i)
-        of[i] = &ready[k % 3 ? size_t(i) : 0];
+        of[i] = &ready[k % 3 ? size_t(i) : 0][0];
       samples += expect_the_same([&](const BsdfKernel &kernel, BsdfRows &rows) { kernel.planned(places, of, layered, rows); },
                                  code.name() + ", draw " + std::to_string(k));
       if (HasFailure())

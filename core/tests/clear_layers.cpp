@@ -40,7 +40,7 @@ std::shared_ptr<const Scene> stack(Writing writing, uint32_t count, bool bump) {
   instance.slot_count = 1;
   const uint32_t slot = 0;
   add_instances(description, 1, &instance, 1, &slot, nullptr, 0);
-  description.world.radiance.value = glm::vec3(1.0f);
+  description.world = constant_sky(glm::vec3(1.0f));
   return commit(std::move(description), AcceleratorKind::Bvh, {});
 }
 

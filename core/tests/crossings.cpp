@@ -1,4 +1,5 @@
 // Transparent layers along a ray: each place once, in order of distance.
+#include "geometry_lab.h"
 #include "integrator/stages/hit.h"
 
 #include <algorithm>

@@ -6,32 +6,39 @@
 namespace lancer_test {
 namespace {
 
-Cutout cutout_of(Writing writing, float shines = 0.0f, void (*change)(Material &) = nullptr) {
+// The cutout of a leaf, and the description that it refers to.
+struct Leaf : Cutout {
   Description description;
-  add_leaf_picture(description);
-  add_foliage_materials(description, writing, shines);
-  if (change)
-    change(description.materials[0]);
-  return make_cutouts(description.materials, description.images)[0];
-}
-Cutout changed(void (*change)(Material &)) { return cutout_of(Writing::Plain, 0.0f, change); }
+
+  explicit Leaf(Writing writing, float shines = 0.0f, void (*change)(Material &) = nullptr) {
+    add_leaf_picture(description);
+    add_foliage_materials(description, writing, shines);
+    if (change) {
+      Material material = *description.materials[0];
+      change(material);
+      description.materials[0] = Given<Material>(std::move(material));
+    }
+    static_cast<Cutout &>(*this) = make_cutout(*description.materials[0]);
+  }
+};
+Leaf changed(void (*change)(Material &)) { return Leaf(Writing::Plain, 0.0f, change); }
 
 TEST(Cutouts, KnownByTheirNodes) {
-  const Cutout plain = cutout_of(Writing::Plain);
+  const Leaf plain(Writing::Plain);
   EXPECT_TRUE(plain.alpha.known() && plain.painted && plain.may_end && plain.ends_with_alpha);
-  EXPECT_EQ(plain.alpha.image, 0u);
+  EXPECT_EQ(plain.alpha.image->texels, plain.description.images[0]->texels);
   EXPECT_FALSE(plain.alpha.clamped);
-  const Cutout mixed = cutout_of(Writing::Mixed);
+  const Leaf mixed(Writing::Mixed);
   EXPECT_TRUE(mixed.alpha.known() && mixed.alpha.clamped && mixed.may_end && mixed.ends_with_alpha);
   // Alpha from nodes that depend on the place in a triangle only; and on more.
-  const Cutout disguised = cutout_of(Writing::Disguised), anywhere = cutout_of(Writing::Unknown);
+  const Leaf disguised(Writing::Disguised), anywhere(Writing::Unknown);
   EXPECT_TRUE(!disguised.alpha.known() && disguised.painted && disguised.may_end);
   EXPECT_TRUE(!anywhere.alpha.known() && !anywhere.painted && !anywhere.may_end);
 }
 
 TEST(Cutouts, SomethingMayBeLeftWhereAlphaIs0) {
   // The surface emits, scatters by another weight, or is a holdout.
-  EXPECT_FALSE(cutout_of(Writing::Plain, 1.0f).may_end);
+  EXPECT_FALSE(Leaf(Writing::Plain, 1.0f).may_end);
   EXPECT_FALSE(changed([](Material &material) { material.lobes[0].weight.node = -1; }).may_end);
   EXPECT_FALSE(changed([](Material &material) { material.lobes[0].weight.node = 2; }).ends_with_alpha);
   EXPECT_FALSE(changed([](Material &material) { material.holdout.value = glm::vec3(1.0f); }).may_end);

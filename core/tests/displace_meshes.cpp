@@ -40,11 +40,11 @@ void place(Description &description, const std::vector<uint32_t> &materials) {
   instance.first_slot = uint32_t(description.slots.size());
   instance.slot_count = uint32_t(materials.size());
   description.slots.insert(description.slots.end(), materials.begin(), materials.end());
-  description.geometry.instances.push_back(instance);
+  description.instances.push_back(instance);
 }
 
 const Mesh &mesh_of(const Description &description, uint32_t instance) {
-  return description.geometry.meshes[description.geometry.instances[instance].mesh];
+  return *description.meshes[description.instances[instance].mesh];
 }
 
 TEST(DisplaceMeshes, EachInstanceGoesWhereItsOwnMaterialsSay) {
@@ -65,7 +65,7 @@ TEST(DisplaceMeshes, EachInstanceGoesWhereItsOwnMaterialsSay) {
       for (const glm::vec3 &p : mesh_of(description, i).positions)
         EXPECT_EQ(p.z, height[order[i]]) << "instance " << i;
     // Instances with equal displacement share a mesh: one for still, up and down each.
-    EXPECT_EQ(description.geometry.meshes.size(), 3u);
+    EXPECT_EQ(description.meshes.size(), 3u);
   }
 }
 
@@ -81,7 +81,7 @@ TEST(DisplaceMeshes, OnlySlotsThatOccurCount) {
   place(description, {0, 1});
   place(description, {1, 1});
   displace(description, BuildContext{});
-  EXPECT_EQ(description.geometry.meshes.size(), 1u);
+  EXPECT_EQ(description.meshes.size(), 1u);
   EXPECT_EQ(mesh_of(description, 0).positions[0].z, -1.0f);
 }
 
@@ -98,7 +98,7 @@ TEST(DisplaceMeshes, WhatNoVertexCanHaveIsSaid) {
   displace(description, BuildContext{});
   for (size_t i = 0; i < 4; ++i)
     EXPECT_EQ(mesh_of(description, 0).positions[i], glm::vec3(kCorners[3 * i], kCorners[3 * i + 1], 0.0f));
-  EXPECT_EQ(description.messages.text(),
+  EXPECT_EQ(description.messages(),
             "mesh 'square': 3 vertices of material 'wild' were not moved: their displacement is not finite or too large\n"
             "mesh 'square': 3 vertices of material 'far' were not moved: their displacement is not finite or too large\n");
 }
@@ -114,11 +114,11 @@ TEST(DisplaceMeshes, MessagesNameTheMeshAsGiven) {
   add_mesh(description, mesh);
   for (const uint32_t material : {0, 0, 1}) {
     place(description, {material});
-    description.geometry.instances.back().mesh = description.geometry.instances.size() == 2 ? 1 : 0;
+    description.instances.back().mesh = description.instances.size() == 2 ? 1 : 0;
   }
   displace(description, BuildContext{});
-  EXPECT_EQ(description.geometry.meshes.size(), 3u);
-  EXPECT_EQ(description.messages.text(),
+  EXPECT_EQ(description.meshes.size(), 3u);
+  EXPECT_EQ(description.messages(),
             "mesh #0: 4 vertices of material 'far' were not moved: their displacement is not finite or too large\n");
 }
 
@@ -179,9 +179,9 @@ TEST(DisplaceMeshes, FoldedFacesAreLeftOutWithAllThatIsTheirs) {
   EXPECT_EQ(left.uvs, (std::vector<glm::vec2>{{3, 0}, {4, 0}, {5, 0}}));
   EXPECT_EQ(left.normals.size(), 3u);
   EXPECT_EQ(left.material_slots, std::vector<uint16_t>{1});
-  EXPECT_EQ(left.attributes[0].values, std::vector<float>{8});
-  EXPECT_EQ(left.attributes[1].values, (std::vector<float>{1, 2, 3, 4}));
-  EXPECT_EQ(description.messages.text(),
+  EXPECT_EQ(values_of(left, 0), std::vector<float>{8});
+  EXPECT_EQ(values_of(left, 1), (std::vector<float>{1, 2, 3, 4}));
+  EXPECT_EQ(description.messages(),
             "mesh 'square': 1 faces of material 'fold' that displacement leaves without area were left out\n");
 }
 

@@ -89,23 +89,22 @@ Material many(uint32_t count, const lancer_lobe &lobe, Description &description)
   material.lobes = lobes.data();
   material.lobe_count = count;
   lancer::add_material(description, material);
-  report_limits(label("material", material.name, 0), description.materials.back(), description.messages);
-  return description.materials.back();
+  report_limits(label("material", material.name, 0), *description.materials.back(), description.made_messages);
+  return *description.materials.back();
 }
 
 TEST(MaterialRoom, MoreNormalsThanABsdfHoldsAreSaid) {
   // The shading normal is always there.
   Description few;
   EXPECT_EQ(demand_of(many(kMaxFrames - 1, lobe(LANCER_DIFFUSE, 0.5f), few)).frames, size_t(kMaxFrames));
-  EXPECT_EQ(few.messages.text(), "");
+  EXPECT_EQ(few.messages(), "");
   Description description;
   const MaterialDemand demand = demand_of(many(kMaxFrames, lobe(LANCER_GLOSSY, 0.5f), description));
   EXPECT_EQ(demand.frames, size_t(kMaxFrames) + 1);
   EXPECT_EQ(demand.lobes, size_t(kMaxFrames));
   const std::string most = std::to_string(kMaxFrames), more = std::to_string(kMaxFrames + 1);
-  EXPECT_EQ(description.messages.text(), "material 'Wood': " + more +
-                                             " normals may overlap in one place; lobes beyond the first " + most +
-                                             " normals use the shading normal, and fibres among them are left out\n");
+  EXPECT_EQ(description.messages(), "material 'Wood': " + more + " normals may overlap in one place; lobes beyond the first " +
+                                        most + " normals use the shading normal, and fibres among them are left out\n");
 }
 
 lancer_principled all_layers(uint32_t rules) {
@@ -131,15 +130,15 @@ TEST(MaterialRoom, PrincipledCountsItsLayers) {
     // which walks and that which does not; 3: also that which returns.
     const size_t count = rules == LANCER_RULES_BLENDER_3 ? 9 : 8;
     EXPECT_EQ(demand_of(many(1, layered, description)).lobes, count);
-    EXPECT_EQ(description.messages.text(), "");
+    EXPECT_EQ(description.messages(), "");
     // Frames: the shading normal; 4: those of cloth, coat, anisotropic and matt lobes; 3: those of coat, anisotropic lobes and
     // glass.
-    EXPECT_EQ(demand_of(description.materials[0]).frames, rules == LANCER_RULES_BLENDER_3 ? 4u : 5u);
+    EXPECT_EQ(demand_of(*description.materials[0]).frames, rules == LANCER_RULES_BLENDER_3 ? 4u : 5u);
     const Material twelve = many(12, layered, description);
     EXPECT_EQ(demand_of(twelve).lobes, 12 * count);
     const std::string told =
         "material 'Wood': " + std::to_string(12 * count) + " lobes may overlap in one place; only the first 64";
-    EXPECT_NE(description.messages.text().find(told + " are used\n"), std::string::npos);
+    EXPECT_NE(description.messages().find(told + " are used\n"), std::string::npos);
   }
 }
 

@@ -91,21 +91,27 @@ TEST(FlatObjects, AMeshLiesInThePlane) {
   const float tangents[] = {1, 0, 0.5f, 1, 1, 0, 0.5f, 1, 1, 0, 0.5f, 1, 1, 0, 0.5f, -1, 1, 0, 0.5f, 1};
   const lancer_attribute attribute = {"tangent:", tangents, LANCER_DOMAIN_VERTEX, 4};
   Description description;
-  attribute_name(description, "generated");
+  // A node that reads generated coordinates.
+  const lancer_node generated = node(LANCER_NODE_COORDINATE, LANCER_COORDINATE_GENERATED);
+  lancer_material material = black();
+  material.nodes = &generated;
+  material.node_count = 1;
+  add_material(description, material);
   add_mesh(description, roof(normals, &attribute));
   const lancer_instance instances[] = {placed(kFlat), placed({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}), placed(kFlat)};
   add_instances(description, 3, instances, 0, nullptr, nullptr, 0);
-  ASSERT_EQ(description.geometry.instances.size(), 3u);
-  EXPECT_EQ(description.messages.text(), "");
-  flatten(description, BuildContext{});
+  ASSERT_EQ(description.instances.size(), 3u);
+  EXPECT_EQ(description.messages(), "");
+  MadeMeshes made;
+  flatten(description, BuildContext{}, made);
   // One copy for all that lie in the same plane; the other keeps its own.
-  const std::vector<Instance> &found = description.geometry.instances;
+  const std::vector<Instance> &found = description.instances;
   EXPECT_EQ(found[0].mesh, 1u);
   EXPECT_EQ(found[1].mesh, 0u);
   EXPECT_EQ(found[2].mesh, 1u);
-  EXPECT_EQ(description.geometry.meshes.size(), 2u);
-  EXPECT_EQ(description.geometry.meshes[0].positions[3].z, 3.0f);
-  const Mesh &mesh = description.geometry.meshes[1];
+  EXPECT_EQ(description.meshes.size(), 2u);
+  EXPECT_EQ(description.meshes[0]->positions[3].z, 3.0f);
+  const Mesh &mesh = *description.meshes[1];
   for (size_t i = 0; i < 5; ++i)
     EXPECT_EQ(mesh.positions[i], glm::vec3(kPositions[3 * i], kPositions[3 * i + 1], 0.0f));
   // The wall is seen edge-on.
@@ -113,12 +119,12 @@ TEST(FlatObjects, AMeshLiesInThePlane) {
   EXPECT_EQ(mesh.normals[0], glm::vec3(0, 0, 1));
   EXPECT_EQ(mesh.normals[1], glm::vec3(0, 0, -1));
   EXPECT_EQ(mesh.normals[2], glm::vec3(0.0f));
-  const MeshAttribute &laid = mesh.attributes[0];
-  EXPECT_EQ(std::vector<float>(laid.values.begin(), laid.values.begin() + 4), (std::vector<float>{1, 0, 0, 1}));
+  const std::vector<float> laid = values_of(mesh, 0);
+  EXPECT_EQ(std::vector<float>(laid.begin(), laid.begin() + 4), (std::vector<float>{1, 0, 0, 1}));
   // Generated coordinates are those before.
-  const MeshAttribute &generated = mesh.attributes[1];
-  EXPECT_EQ(generated.values[2], float(1.0 / 3.0));
-  EXPECT_EQ(generated.values[11], 1.0f);
+  const std::vector<float> before = values_of(mesh, 1);
+  EXPECT_EQ(before[2], float(1.0 / 3.0));
+  EXPECT_EQ(before[11], 1.0f);
 }
 
 TEST(FlatObjects, OnlyWhatHasNoAreaIsLeftOut) {
@@ -132,10 +138,10 @@ TEST(FlatObjects, OnlyWhatHasNoAreaIsLeftOut) {
                                        placed({1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0})};
   add_instances(description, 5, instances, 0, nullptr, nullptr, 0);
   // A plane has no thickness to lose; across the wall the roof is a line, and along it the wall is left.
-  ASSERT_EQ(description.geometry.instances.size(), 2u);
-  EXPECT_EQ(description.geometry.instances[0].kind, ShapeKind::Plane);
-  EXPECT_EQ(description.geometry.instances[0].to_world.linear[0], glm::dvec3(2, 0, 0));
-  EXPECT_EQ(description.messages.text(),
+  ASSERT_EQ(description.instances.size(), 2u);
+  EXPECT_EQ(description.instances[0].kind, ShapeKind::Plane);
+  EXPECT_EQ(description.instances[0].to_world.linear[0], glm::dvec3(2, 0, 0));
+  EXPECT_EQ(description.messages(),
             "object #0: its matrix is singular and leaves it no area; it was left out\n"
             "object #1: its matrix is singular (a scale of 0), which no exact shape can have; it was left out\n"
             "object #3: its matrix is singular and leaves it no area; it was left out\n");

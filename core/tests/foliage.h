@@ -130,7 +130,7 @@ inline std::shared_ptr<const Scene> foliage(Writing writing, const Planting &pla
   if (planting.mirrored)
     second.matrix[0] = -second.matrix[0];
   add_instances(description, uint32_t(instances.size()), instances.data(), 4, all_slots, nullptr, 0);
-  description.world.radiance.value = glm::vec3(0.8f, 0.9f, 1.0f);
+  description.world = constant_sky(glm::vec3(0.8f, 0.9f, 1.0f));
   for (int i = 0; i < 3 && planting.lamps; ++i) {
     lancer_light lamp = point_light();
     place(lamp.matrix, -1.0 + i, 0.5 - 0.4 * i, 0.3 + 1.8 * i);

@@ -57,7 +57,7 @@ void expect_same_bits(const void *a, const void *b, size_t bytes, float u, float
 
 // Compares look-ups at random coordinates, beside the borders of blocks and of the image, and at numbers that are not finite.
 void expect_same_looks(Random &random, const Both &both, uint32_t flags) {
-  const Image &rows = both.rows.images[0], &blocks = both.blocks.images[0];
+  const Image &rows = *both.rows.images[0], &blocks = *both.blocks.images[0];
   std::uniform_real_distribution<float> somewhere(-2.0f, 3.0f), near(-1.5f, 1.5f);
   const auto place = [&](uint32_t side) {
     const float special[] = {0.0f, 1.0f, -1e-9f, 1e30f, NAN, INFINITY, 1.0f - 0x1p-24f};
@@ -84,10 +84,10 @@ void expect_same_looks(Random &random, const Both &both, uint32_t flags) {
     block.p[1][lane] = double(place(rows.height));
   }
   NodeLanes of_rows[2], of_blocks[2];
-  block.scene.images = &both.rows.images;
-  node_kernel().run(program, {0, 1}, block, of_rows);
-  block.scene.images = &both.blocks.images;
-  node_kernel().run(program, {0, 1}, block, of_blocks);
+  program.images = {rows};
+  node_kernel().run(program, Schedule{0, 1}, block, of_rows);
+  program.images = {blocks};
+  node_kernel().run(program, Schedule{0, 1}, block, of_blocks);
   const auto extension = static_cast<Extension>(flags & 0xf);
   const auto interpolation = static_cast<Interpolation>(flags >> 4 & 0xf);
   for (int lane = 0; lane < kBlockLanes; ++lane) {
@@ -124,7 +124,7 @@ TEST(ImageLanes, BlocksHaveTheBitsOfRows) {
           image.transfer = random() % 2 ? LANCER_TRANSFER_SRGB : LANCER_TRANSFER_LINEAR;
           image.alpha = random() % 2 ? LANCER_ALPHA_ASSOCIATED : LANCER_ALPHA_CHANNEL_PACKED;
           const Both both(image);
-          ASSERT_FALSE(both.blocks.images[0].texels);
+          ASSERT_FALSE(both.blocks.images[0]->memory);
           for (uint32_t extension = 0; extension < 4; ++extension)
             for (uint32_t interpolation = 0; interpolation < 3; ++interpolation) {
               SCOPED_TRACE(testing::Message() << width << " x " << height << ", kind " << kind << ", channels " << channels
@@ -149,9 +149,8 @@ TEST(ImageLanes, BlocksOfTwoGigabytes) {
   lancer_image image = image_of(std::vector<float>(), width, height, 1);
   image.texels = texels;
   image.layout = LANCER_LAYOUT_BLOCKS;
-  Description description;
-  add_image(description, image);
   Program program;
+  hold(program, kept_image(image));
   Node position, look;
   position.kind = LANCER_NODE_COORDINATE;
   position.option = LANCER_COORDINATE_POSITION;
@@ -164,13 +163,12 @@ TEST(ImageLanes, BlocksOfTwoGigabytes) {
   NodeBlock block{};
   block.surface = false;
   block.used = 0xffff;
-  block.scene.images = &description.images;
   for (int lane = 0; lane < kBlockLanes; ++lane) {
     block.p[0][lane] = (width - 0.5) / width;
     block.p[1][lane] = lane % 2 ? (height - 0.5) / height : 0.5 / height;
   }
   NodeLanes values[2];
-  node_kernel().run(program, {0, 1}, block, values);
+  node_kernel().run(program, Schedule{0, 1}, block, values);
   for (int lane = 0; lane < kBlockLanes; ++lane)
     EXPECT_EQ(values[1].of[0][lane], lane % 2 ? 0.25f : 0.125f) << lane;
 }
@@ -182,8 +180,8 @@ TEST(ImageBlocks, TheCallerCountsGaps) {
   image.gaps = 1;
   const Both both(image);
   for (const Description *description : {&both.rows, &both.blocks}) {
-    EXPECT_TRUE(description->images[0].has_gaps);
-    EXPECT_EQ(description->messages.text(), "image 'holes': 1 texels are not finite, look-ups that read one give black\n");
+    EXPECT_TRUE(description->images[0]->has_gaps);
+    EXPECT_EQ(description->messages(), "image 'holes': 1 texels are not finite, look-ups that read one give black\n");
   }
   Random random(1);
   for (uint32_t interpolation = 0; interpolation < 3; ++interpolation)

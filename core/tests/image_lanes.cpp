@@ -36,14 +36,11 @@ Image random_image(Random &random, uint32_t width, uint32_t height, bool matrix,
   image.alpha = form.alpha;
   for (int i = 0; i < 9; ++i)
     image.matrix[i] = matrix ? float(random() % 1000) / 500.0f - 0.5f : i % 4 == 0 ? 1.0f : 0.0f;
-  Description description;
-  add_image(description, image);
-  return std::move(description.images[0]);
+  return kept_image(image);
 }
 
 // Compares lookups at random coordinates, at and beside texel centres and borders, and at coordinates that are not finite.
-void expect_looks(Random &random, const std::vector<Image> &images, uint32_t flags) {
-  const Image &image = images[0];
+void expect_looks(Random &random, const Image &image, uint32_t flags) {
   std::uniform_real_distribution<float> somewhere(-3.0f, 4.0f);
   const float special[] = {0.5f / float(image.height), 1.0f, 0.0f, -1e-9f, 1e30f, NAN, INFINITY, 1.0f - 0x1p-24f};
   // Image coordinates as world positions.
@@ -57,8 +54,8 @@ void expect_looks(Random &random, const std::vector<Image> &images, uint32_t fla
   look.image_count = 1;
   look.inputs[0].node = 0;
   program.nodes = {place, look};
+  program.images = {image};
   NodeBlock block{};
-  block.scene.images = &images;
   block.surface = false;
   block.used = random() & 0xffff;
   for (int lane = 0; lane < kBlockLanes; ++lane) {
@@ -66,7 +63,7 @@ void expect_looks(Random &random, const std::vector<Image> &images, uint32_t fla
     block.p[1][lane] = double(random() % 2 ? somewhere(random) : special[random() % 8]);
   }
   NodeLanes values[2];
-  node_kernel().run(program, {0, 1}, block, values);
+  node_kernel().run(program, Schedule{0, 1}, block, values);
   const auto extension = static_cast<Extension>(flags & 0xf);
   for (int lane = 0; lane < kBlockLanes; ++lane) {
     if (!(block.used >> lane & 1))
@@ -93,25 +90,23 @@ TEST(ImageLanes, LookUpsAreThoseOfOnePlace) {
             const Extension extensions[] = {Extension::Extend, Extension::Repeat, Extension::Clip, Extension::Mirror};
             const Extension extension = extensions[(look >> 3 & 1) + (look >> 4 & 2)];
             SCOPED_TRACE(testing::Message() << kind << " " << channels << " " << transfer << " " << alpha_mode << " " << look);
-            std::vector<Image> images;
-            images.push_back(random_image(random, 1 + random() % 37, 1 + random() % 37, matrix, form, unit));
+            const Image image = random_image(random, 1 + random() % 37, 1 + random() % 37, matrix, form, unit);
             for (int i = 0; i < 30; ++i)
-              ASSERT_NO_FATAL_FAILURE(expect_looks(random, images, uint32_t(extension) | (straight ? 256u : 0u)));
+              ASSERT_NO_FATAL_FAILURE(expect_looks(random, image, uint32_t(extension) | (straight ? 256u : 0u)));
           }
 }
 
 // An environment image, rotated or not, times a colour or not.
 struct Sky {
   World world;
-  std::vector<Image> images;
   Normalisation normalisation;
 
   Sky(Random &random, bool mapped, bool multiplied, bool maximum) {
     const uint32_t kind = kKinds[random() % 3], channels = kChannels[random() % 3];
     const bool curve = kind != LANCER_TEXEL_FLOAT && random() % 2;
-    images.push_back(
-        random_image(random, 2 * (4 + random() % 60), 4 + random() % 60, false,
-                     {kind, channels, uint32_t(curve ? LANCER_TRANSFER_SRGB : LANCER_TRANSFER_LINEAR), LANCER_ALPHA_NONE}));
+    hold(world.program,
+         random_image(random, 2 * (4 + random() % 60), 4 + random() % 60, false,
+                      {kind, channels, uint32_t(curve ? LANCER_TRANSFER_SRGB : LANCER_TRANSFER_LINEAR), LANCER_ALPHA_NONE}));
     Node direction, mapping, environment, product;
     direction.kind = LANCER_NODE_COORDINATE;
     direction.option = random() % 2 ? LANCER_COORDINATE_GENERATED : LANCER_COORDINATE_POSITION;
@@ -142,13 +137,12 @@ TEST(SkyLanes, TheSkyIsThatOfOneDirection) {
   std::normal_distribution<double> normal;
   for (int round = 0; round < 60; ++round) {
     const Sky sky(random, random() % 2, random() % 2, random() % 2);
-    const Environment environment(sky.world, sky.images, sky.normalisation, BuildContext{.threads = 1}, true);
+    const Environment environment(sky.world, sky.normalisation, BuildContext{.threads = 1}, true);
     std::vector<glm::vec4> values(4);
     for (int i = 0; i < 400; ++i) {
       const bool transmits = i % 2;
       SkyBlock samples{}, seen{};
       NodeBlock nodes{};
-      nodes.scene.images = &sky.images;
       nodes.scene.normalisation = &sky.normalisation;
       nodes.surface = false;
       nodes.used = 0xffff;

@@ -15,9 +15,7 @@ Image picture(uint32_t width, uint32_t height, uint32_t channels, const std::vec
   lancer_image image = image_of(texels, width, height, channels);
   image.transfer = transfer;
   image.alpha = alpha;
-  Description description;
-  add_image(description, image);
-  return std::move(description.images[0]);
+  return kept_image(image);
 }
 
 float grey(const Image &image, float u, float v, Extension extension, Interpolation interpolation) {
@@ -202,9 +200,7 @@ TEST(ImagesLookup, MatrixIsOfRows) {
   image.kind = LANCER_TEXEL_FLOAT;
   const float rows[9] = {0, 1, 0, 0, 0, 1, 1, 1, 1};
   std::copy(rows, rows + 9, image.matrix);
-  Description description;
-  add_image(description, image);
-  EXPECT_EQ(glm::vec3(lookup(description.images[0], glm::vec2(0.5f), Extension::Repeat, Interpolation::Linear, false)),
+  EXPECT_EQ(glm::vec3(lookup(kept_image(image), glm::vec2(0.5f), Extension::Repeat, Interpolation::Linear, false)),
             glm::vec3(2, 4, 7));
 }
 
@@ -258,7 +254,7 @@ TEST(ImagesLookup, WhatReadsATexelThatIsNoNumberIsBlack) {
   lancer_image image = image_of(texels, 4, 1);
   image.name = "holes";
   add_image(description, image);
-  const Image &kept = description.images[0];
+  const Image &kept = *description.images[0];
   const auto at = [&](float u, Interpolation interpolation) {
     return lookup(kept, {u, 0.5f}, Extension::Extend, interpolation, false);
   };
@@ -270,7 +266,7 @@ TEST(ImagesLookup, WhatReadsATexelThatIsNoNumberIsBlack) {
   EXPECT_EQ(at(0.25f, Interpolation::Linear), glm::vec4(0, 0, 0, 1));
   EXPECT_EQ(at(0.5f, Interpolation::Linear), glm::vec4(1, 2, 3, 0));
   EXPECT_EQ(at(0.875f, Interpolation::Linear), glm::vec4(1, 2, 3, 1));
-  EXPECT_EQ(description.messages.text(), "image 'holes': 2 texels are not finite, look-ups that read one give black\n");
+  EXPECT_EQ(description.messages(), "image 'holes': 2 texels are not finite, look-ups that read one give black\n");
 }
 
 TEST(ImagesLookup, TheAlphaAloneIsThatOfTheWhole) {

@@ -1,4 +1,5 @@
 // Building many lights ends soon after it is cancelled.
+#include "geometry_lab.h"
 #include "lights/emission.h"
 #include "lights/light_set.h"
 
@@ -28,11 +29,12 @@ TEST(Lights, AMeshOfManyFacesCanBeCancelled) {
   geometry.meshes[0].triangles = {{0, 1, 2}};
   geometry.instances.resize(1);
   geometry.instances[0].slot_count = 1;
-  std::vector<Material> materials(1);
+  const std::vector<uint32_t> slots{0};
+  std::vector<MaterialView> materials(1);
   materials[0].emission.value = glm::vec3(1.0f);
   EmissionAt emission({}, materials);
-  EXPECT_FALSE(EmissiveFaces(geometry, {0}, materials, 0, false, emission, {}).empty());
-  EXPECT_THROW(EmissiveFaces(geometry, {0}, materials, 0, false, emission, kCancelled), BuildCancelled);
+  EXPECT_FALSE(EmissiveFaces(geometry, slots, materials, 0, false, emission, {}).empty());
+  EXPECT_THROW(EmissiveFaces(geometry, slots, materials, 0, false, emission, kCancelled), BuildCancelled);
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 #include "compile/scene.h"
 #include "lancer.h"
 #include "lights/environment.h"
+#include "nodes_lab.h"
 
 #include <cstring>
 #include <gtest/gtest.h>
@@ -104,7 +105,6 @@ TEST(DirectionMap, NothingToChooseGivesNoSample) {
 // A world whose radiance is one image, seen through a rotated mapping.
 struct Sky {
   World world;
-  std::vector<Image> images;
   Normalisation normalisation;
 
   // Grey texels; the environment projection of lancer.h.
@@ -115,9 +115,9 @@ struct Sky {
     image.channels = 1;
     image.kind = TexelKind::Float;
     image.alpha = AlphaMode::None;
-    image.texels = allocate_texels(texels.size() * sizeof(float));
-    std::memcpy(image.texels.get(), texels.data(), texels.size() * sizeof(float));
-    images.push_back(std::move(image));
+    image.keep(allocate_texels(texels.size() * sizeof(float)));
+    std::memcpy(image.memory.get(), texels.data(), texels.size() * sizeof(float));
+    lancer_test::hold(world.program, std::move(image));
     Node direction, mapping, environment;
     direction.kind = LANCER_NODE_COORDINATE;
     direction.option = LANCER_COORDINATE_GENERATED;
@@ -132,7 +132,7 @@ struct Sky {
     world.radiance.node = 2;
     world.schedule = world.program.schedule(std::span(&world.radiance, 1));
   }
-  Environment environment() const { return Environment(world, images, normalisation, BuildContext{.threads = 2}, true); }
+  Environment environment() const { return Environment(world, normalisation, BuildContext{.threads = 2}, true); }
 };
 
 // Returns the integral of radiance over all directions, by this many samples of the environment.
@@ -245,15 +245,14 @@ TEST(Environment, LooksAtEachTexelUpToABound) {
 TEST(Environment, CanBeCancelled) {
   const Sky sky(4, 2, std::vector<float>(8, 1.0f), glm::vec3(0.0f));
   std::atomic<bool> cancel{true};
-  EXPECT_THROW(Environment(sky.world, sky.images, sky.normalisation, BuildContext{.cancel = &cancel}, true), BuildCancelled);
+  EXPECT_THROW(Environment(sky.world, sky.normalisation, BuildContext{.cancel = &cancel}, true), BuildCancelled);
 }
 
 TEST(Environment, AConstantOneIsNoLight) {
   World world;
   world.radiance.value = glm::vec3(0.25f, 0.5f, 0.75f);
-  const std::vector<Image> images;
   const Normalisation normalisation;
-  const Environment environment(world, images, normalisation, BuildContext{}, true);
+  const Environment environment(world, normalisation, BuildContext{}, true);
   EXPECT_FALSE(environment.varies());
   EXPECT_EQ(environment.radiance({0.0, 1.0, 0.0}, {}, nullptr), world.radiance.value);
   EXPECT_EQ(environment.sample({0.5f, 0.5f}, {}, nullptr, false).pdf, 0.0);

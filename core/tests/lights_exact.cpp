@@ -1,4 +1,5 @@
 // Exact surfaces that emit: samples cover each part by its area, with the density that belongs to the whole area.
+#include "geometry_lab.h"
 #include "lights/emission.h"
 #include "nodes_lab.h"
 #include "scene/fill.h"
@@ -23,7 +24,7 @@ Shares shares_of(ShapeKind kind, double area) {
   instance.kind = kind;
   instance.slot_count = 1;
   instance.place(Affine{});
-  std::vector<Material> materials(1);
+  std::vector<MaterialView> materials(1);
   materials[0].emission.value = glm::vec3(1.0f);
   const std::vector<uint32_t> slots{0};
   EmissionAt emission({}, materials);
@@ -90,14 +91,16 @@ TEST(LightsExact, PowersOfFacesAreMeansOverThem) {
       node(LANCER_NODE_MATH, LANCER_MATH_MINIMUM, {result_of(1), result_of(2), constant(0.0f)}),
       node(LANCER_NODE_MATH, LANCER_MATH_GREATER_THAN, {result_of(3), constant(0.25f), constant(0.0f)}),
       node(LANCER_NODE_MATH, LANCER_MATH_MULTIPLY, {result_of(4), constant(4.0f), constant(0.0f)})};
-  Description description;
-  std::vector<Material> materials(2);
-  materials[0].program = read_program(description, "middle", nodes, std::size(nodes));
-  materials[0].emission.node = 5;
-  materials[0].emission_nodes = materials[0].program.schedule(std::span(&materials[0].emission, 1));
-  materials[1].emission.value = glm::vec3(1.0f);
-  EmissionAt emission({.geometry = &geometry}, materials);
-  const EmissiveFaces faces(geometry, {0, 1}, materials, 0, false, emission, BuildContext{});
+  Material bright, even;
+  bright.program = read_program({}, "middle", nodes, std::size(nodes));
+  bright.emission.node = 5;
+  bright.emission_nodes = bright.program.schedule(std::span(&bright.emission, 1));
+  even.emission.value = glm::vec3(1.0f);
+  const std::vector<MaterialView> materials{bright, even};
+  const std::vector<uint32_t> slots{0, 1};
+  const GeometryView view = geometry;
+  EmissionAt emission({.geometry = &view}, materials);
+  const EmissiveFaces faces(view, slots, materials, 0, false, emission, BuildContext{});
   EXPECT_NEAR(faces.by_power().pmf(0), 0.5f, 1e-6f);
 }
 

@@ -12,7 +12,6 @@ namespace {
 
 struct Framed {
   World world;
-  std::vector<Image> images;
   Normalisation normalisation{{7.0, -3.0, 11.0}, 64.0};
   Camera camera;
   Environment environment;
@@ -25,7 +24,7 @@ struct Framed {
     world.radiance.node = 0;
     world.map_resolution = 8;
     world.schedule = world.program.schedule(std::span(&world.radiance, 1));
-    environment = Environment(world, images, normalisation, BuildContext{.threads = 1}, false);
+    environment = Environment(world, normalisation, BuildContext{.threads = 1}, false);
     // At the user's (1, 2, 3), facing +y: the camera's x, y, z are the world's x, z, -y.
     camera.to_world.linear = glm::dmat3(1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, -1.0, 0.0);
     camera.to_world.translation = normalisation.to_normalised(glm::dvec3(1.0, 2.0, 3.0));

@@ -17,14 +17,13 @@ using Random = std::mt19937;
 Image made(lancer_image image, uint32_t transfer = LANCER_TRANSFER_LINEAR) {
   image.mipmaps = 1;
   image.transfer = transfer;
-  Description description;
-  add_image(description, image);
-  make_mipmaps(description.images[0]);
-  return std::move(description.images[0]);
+  Image kept = kept_image(image);
+  make_mipmaps(kept);
+  return kept;
 }
 
 template <class Texel> const Texel *level_of(const Image &image, uint32_t level) {
-  return reinterpret_cast<const Texel *>(image.data() + image.level_offset(level));
+  return reinterpret_cast<const Texel *>(image.texels + image.level_offset(level));
 }
 size_t texels_of(const Image &image, uint32_t level) {
   return size_t(level_side(image.width, level)) * level_side(image.height, level);
@@ -149,10 +148,11 @@ void add_numbered(Description &description, uint32_t width, uint32_t height) {
   const std::vector<float> texels(size_t(width) * height);
   lancer_image image = image_of(texels, width, height, 1);
   image.mipmaps = 1;
-  add_image(description, image);
-  Image &made = description.images.back();
-  for (uint32_t level = 0; level < made.levels; ++level)
-    std::fill_n(reinterpret_cast<float *>(made.texels.get() + made.level_offset(level)), texels_of(made, level), float(level));
+  Image numbered = kept_image(image);
+  for (uint32_t level = 0; level < numbered.levels; ++level)
+    std::fill_n(reinterpret_cast<float *>(numbered.memory.get() + numbered.level_offset(level)), texels_of(numbered, level),
+                float(level));
+  description.images.emplace_back(std::move(numbered));
 }
 
 lancer_node shown(int32_t where, uint32_t extension = LANCER_EXTEND_REPEAT) {
@@ -169,19 +169,19 @@ protected:
 
   // The mean level over places of the triangle, whose edges of length 2 are the unit of its UV map.
   double mean_level(const std::vector<lancer_node> &nodes, float width) {
-    const Program program = read_program(stage.description, "test", nodes.data(), uint32_t(nodes.size()));
+    const Program program = read_program(stage.description.images, "test", nodes.data(), uint32_t(nodes.size()));
     Parameter last;
     last.node = int32_t(nodes.size()) - 1;
     const Schedule schedule = program.schedule(std::span(&last, 1));
     std::vector<glm::vec4> values(program.value_count());
+    const DescribedGeometry geometry(stage.description);
     std::uniform_real_distribution<double> place(0.1, 0.4);
     double sum = 0.0;
     const int count = 4000;
     for (int i = 0; i < count; ++i) {
       const Surface s = stage.surface(place(random), place(random));
       NodeContext context;
-      context.geometry = &stage.description.geometry;
-      context.images = &stage.description.images;
+      context.geometry = &geometry;
       context.normalisation = &stage.normalisation;
       context.surface = &s;
       context.path.width = width;
@@ -232,10 +232,7 @@ TEST_F(MipmapLevels, OfWhatDoesNotChange) {
 
 TEST_F(MipmapLevels, ClippedImagesEndAtTheirBorder) {
   const std::vector<float> texels(size_t(128) * 128, 1.0f);
-  lancer_image image = image_of(texels, 128, 128, 1);
-  image.mipmaps = 1;
-  add_image(stage.description, image);
-  make_mipmaps(stage.description.images[0]);
+  stage.description.images.emplace_back(made(image_of(texels, 128, 128, 1)));
   const auto at = [&](float u) {
     return stage.value(
         {node(LANCER_NODE_COMBINE, 0, {constant(u), constant(0.5f), constant(0.0f)}), shown(0, LANCER_EXTEND_CLIP)});
@@ -250,32 +247,26 @@ TEST_F(MipmapLevels, LanesAndBlocksHaveTheSameBits) {
   std::vector<uint8_t> texels(size_t(300) * 200 * 4);
   for (uint8_t &texel : texels)
     texel = uint8_t(random());
-  lancer_image image = image_of(texels, 300, 200, 4);
-  image.mipmaps = 1;
-  image.transfer = LANCER_TRANSFER_SRGB;
-  Description rows = std::move(stage.description), blocks;
-  add_image(rows, image);
-  Image &of_rows = rows.images[0];
-  make_mipmaps(of_rows);
+  std::vector<Given<Image>> rows, blocks;
+  rows.emplace_back(made(image_of(texels, 300, 200, 4), LANCER_TRANSFER_SRGB));
+  const Image &of_rows = *rows[0];
   // The same levels in blocks.
   Image of_blocks;
   of_blocks.width = 300, of_blocks.height = 200, of_blocks.levels = of_rows.levels;
   of_blocks.transfer = of_rows.transfer, of_blocks.alpha = of_rows.alpha;
-  alignas(64) static std::byte none[64];
-  of_blocks.blocks = none;
-  const Texels memory = allocate_texels(of_blocks.bytes());
-  of_blocks.blocks = memory.get();
+  of_blocks.in_blocks = true;
+  of_blocks.keep(allocate_texels(of_blocks.bytes()));
   for (uint32_t level = 0; level < of_rows.levels; ++level) {
     const uint32_t across = level_side(300, level), up = level_side(200, level);
     for (uint32_t y = 0; y < up; ++y)
       for (uint32_t x = 0; x < across; ++x) {
         const size_t block = size_t(y / 64) * blocks_along(across) + x / 64, inside = size_t(y % 64) * 64 + x % 64;
-        std::memcpy(memory.get() + of_blocks.level_offset(level) + (block * 64 * 64 + inside) * 4,
-                    of_rows.data() + of_rows.level_offset(level) + (size_t(y) * across + x) * 4, 4);
+        std::memcpy(of_blocks.memory.get() + of_blocks.level_offset(level) + (block * 64 * 64 + inside) * 4,
+                    of_rows.texels + of_rows.level_offset(level) + (size_t(y) * across + x) * 4, 4);
       }
   }
-  std::vector<Image> images;
-  images.push_back(std::move(of_blocks));
+  blocks.emplace_back(std::move(of_blocks));
+  const DescribedGeometry geometry(stage.description);
   std::uniform_real_distribution<float> number(-3.0f, 3.0f), width(0.0f, 0.5f);
   const auto any = [&] { return constant(number(random), number(random), number(random)); };
   const uint32_t places[] = {LANCER_COORDINATE_UV,         LANCER_COORDINATE_OBJECT,   LANCER_COORDINATE_GENERATED,
@@ -309,17 +300,17 @@ TEST_F(MipmapLevels, LanesAndBlocksHaveTheSameBits) {
     look.flags |= uint32_t(random() % 3) << 4;
     nodes.push_back(look);
     const Program program = read_program(rows, "test", nodes.data(), uint32_t(nodes.size()));
+    const Program in_blocks = read_program(blocks, "test", nodes.data(), uint32_t(nodes.size()));
     ASSERT_TRUE(program.mipmapped);
     Parameter last;
     last.node = int32_t(nodes.size()) - 1;
     const Schedule schedule = program.schedule(std::span(&last, 1));
     NodeBlock block{};
-    block.scene = {&rows.geometry, &rows.images, &stage.normalisation, nullptr};
+    block.scene = {&geometry, &stage.normalisation, nullptr};
     block.used = 0xffff;
     std::vector<NodeContext> contexts(kBlockLanes);
     std::vector<Surface> surfaces(kBlockLanes);
     std::uniform_real_distribution<double> place(0.0, 0.5);
-    stage.description.geometry = rows.geometry;
     for (int lane = 0; lane < kBlockLanes; ++lane) {
       Surface &s = surfaces[size_t(lane)] = stage.surface(place(random), place(random));
       NodeContext &context = contexts[size_t(lane)];
@@ -340,10 +331,9 @@ TEST_F(MipmapLevels, LanesAndBlocksHaveTheSameBits) {
     }
     std::vector<glm::vec4> one(program.value_count());
     std::vector<NodeLanes> many(program.value_count());
-    for (const std::vector<Image> *of : {&rows.images, &images})
+    for (const Program *of : {&program, &in_blocks})
       for (const NodeKernel *kernel : LANCER_EACH_KERNEL(node_kernel)) {
-        block.scene.images = of;
-        kernel->run(program, schedule, block, many.data());
+        kernel->run(*of, schedule, block, many.data());
         for (int lane = 0; lane < kBlockLanes; ++lane) {
           run(program, schedule, contexts[size_t(lane)], one);
           for (int k = 0; k < 4; ++k) {

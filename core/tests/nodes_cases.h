@@ -2,6 +2,7 @@
 #pragma once
 
 #include "nodes_lab.h"
+#include "scene/names.h"
 #include "scene/surface.h"
 
 #include <cmath>
@@ -63,14 +64,12 @@ public:
       instance.shading = i == 1 ? Shading::Flat : Shading::AsMesh;
       instance.number = uint32_t(4 - i);
       instance.object_index = uint32_t(3 * i);
-      description.geometry.instances.push_back(instance);
+      description.instances.push_back(instance);
       if (i < 4)
-        description.geometry.object_infos.push_back(
-            {glm::vec4(any_direction(random), 0.5f), uniform_number(random, 0.0f, 1.0f)});
+        description.object_infos.push_back({glm::vec4(any_direction(random), 0.5f), uniform_number(random, 0.0f, 1.0f)});
     }
     // Values of fewer objects than there are.
-    description.geometry.object_attributes.push_back(
-        {attribute_name(description, "paint"), {{0.1f, 0.2f, 0.3f, 0.4f}, {-1.0f, 2.0f, 0.5f, 0.0f}}});
+    description.object_attributes.push_back({attribute_name("paint"), {{0.1f, 0.2f, 0.3f, 0.4f}, {-1.0f, 2.0f, 0.5f, 0.0f}}});
     for (uint32_t i = 0; i < kSides + 6; ++i)
       add_any_image(random, i >= kTiles && i < kSides ? (i == kTiles ? 1001 : i == kTiles + 1 ? 1002 : 1011) : 0);
     for (const uint32_t channels : {1u, 3u, 4u}) {
@@ -90,12 +89,12 @@ public:
     for (float &x : voxels)
       x = uniform_number(random, 0.0f, 1.0f);
     add_image(description, image_of(voxels, 3, 9, 4));
-    camera.to_world = description.geometry.instances[2].to_world;
+    camera.to_world = description.instances[2].to_world;
   }
 
   Surface surface(Random &random, uint32_t instance) const {
     Surface s;
-    const Instance &placed = description.geometry.instances[instance];
+    const Instance &placed = description.instances[instance];
     s.instance = instance;
     s.primitive = placed.kind == ShapeKind::Mesh ? random() % 2 : 0;
     const double u = double(uniform_number(random, 0.0f, 1.0f)), v = double(uniform_number(random, 0.0f, 1.0f)) * (1.0 - u);
@@ -131,13 +130,11 @@ private:
     mesh.normal_domain = LANCER_NORMALS_VERTEX;
     mesh.attributes = attributes;
     mesh.attribute_count = uint32_t(std::size(attributes));
-    add_mesh(description, mesh);
-    MeshAttribute before;
-    before.name = kUndisplaced;
-    before.domain = Domain::Vertex;
-    before.channels = 3;
-    before.values = generated;
-    description.geometry.meshes[0].attributes.push_back(before);
+    Messages messages;
+    Mesh all = read_mesh(mesh, 0, messages);
+    all.add_attribute(kUndisplaced, Domain::Vertex, 3);
+    all.attribute_values.insert(all.attribute_values.end(), generated.begin(), generated.end());
+    description.meshes.emplace_back(std::move(all));
     // Without optional data, except rare attributes.
     mesh.colors = nullptr;
     mesh.normals = nullptr;

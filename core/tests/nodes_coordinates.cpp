@@ -118,10 +118,10 @@ TEST(NodesCoordinates, AttributesOfEveryDomain) {
 
 TEST(NodesCoordinates, ExactSurfacesHaveTheirParametrisation) {
   Stage stage(kRows);
-  stage.description.geometry.instances[0].kind = ShapeKind::Sphere;
+  stage.description.instances[0].kind = ShapeKind::Sphere;
   Surface surface;
   surface.instance = 0;
-  const Instance &instance = stage.description.geometry.instances[0];
+  const Instance &instance = stage.description.instances[0];
   surface.p = instance.to_world.point({0.0, 1.0, 0.0});
   surface.ng = surface.ns = glm::vec3(-1.0f, 0.0f, 0.0f);
   stage.wo = surface.ng;

@@ -74,11 +74,11 @@ Mesh displaced(Description &description, uint32_t domain, uint32_t threads = 1) 
   const double rows[12] = {0, -3, 0, 5, 3, 0, 0, 6, 0, 0, 3, 7};
   instance.to_world = Affine::from_rows(rows);
   instance.slot_count = uint32_t(description.materials.size());
-  description.geometry.instances.push_back(instance);
+  description.instances.push_back(instance);
   BuildContext context;
   context.threads = threads;
   displace(description, context);
-  return description.geometry.meshes[0];
+  return *description.meshes[0];
 }
 
 TEST(NodesDisplace, VerticesFollowTheHeight) {
@@ -151,9 +151,9 @@ TEST(NodesDisplace, CreasesStay) {
   description.slots = {0};
   Instance instance;
   instance.slot_count = 1;
-  description.geometry.instances.push_back(instance);
+  description.instances.push_back(instance);
   displace(description, BuildContext{});
-  const Mesh &moved = description.geometry.meshes[0];
+  const Mesh &moved = *description.meshes[0];
   EXPECT_EQ(moved.positions[1], glm::vec3(1, 0, 2));
   EXPECT_EQ(moved.positions[3], glm::vec3(2, 0, 2));
   for (int corner = 0; corner < 3; ++corner) {
@@ -183,9 +183,8 @@ TEST(NodesDisplace, KeptNormalsAndABumpThatStandsForThem) {
   for (const glm::vec3 &n : mesh.normals)
     EXPECT_EQ(n, glm::vec3(0, 0, 1));
   Stage stage;
-  stage.description.geometry = description.geometry;
-  stage.description.attribute_names = description.attribute_names;
-  Instance &instance = stage.description.geometry.instances[0];
+  stage.description = description;
+  Instance &instance = stage.description.instances[0];
   instance.place(instance.to_world);
   stage.footprint = 0x1p-8f;
   const Surface surface = stage.surface(0.3, 0.3);

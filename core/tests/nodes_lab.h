@@ -3,6 +3,8 @@
 
 #include "accel/accelerator.h"
 #include "compile/scene.h"
+#include "compile/steps.h"
+#include "geometry_lab.h"
 #include "nodes/run.h"
 #include "scene/camera.h"
 #include "scene/fill.h"
@@ -62,7 +64,7 @@ public:
     add_mesh(description, mesh);
     Instance instance;
     instance.place(Affine::from_rows(rows.data()));
-    description.geometry.instances.push_back(instance);
+    description.instances.push_back(instance);
   }
 
   static lancer_mesh triangle() {
@@ -82,19 +84,18 @@ public:
   // Moves everything to the normalised world.
   void normalise(const glm::dvec3 &centre, double scale) {
     normalisation = {centre, scale};
-    Instance &instance = description.geometry.instances[0];
+    Instance &instance = description.instances[0];
     instance.place(normalisation.to_normalised(instance.to_world));
   }
 
   Surface surface(double u, double v, uint32_t primitive = 0) const {
-    const Geometry &geometry = description.geometry;
     Surface s;
     s.instance = 0;
     s.primitive = primitive;
     s.bary = {u, v};
-    const Mesh &mesh = geometry.meshes[0];
+    const Mesh &mesh = *description.meshes[0];
     const glm::dvec3 v0(mesh.vertex(primitive, 0)), v1(mesh.vertex(primitive, 1)), v2(mesh.vertex(primitive, 2));
-    const Instance &instance = geometry.instances[0];
+    const Instance &instance = description.instances[0];
     s.p = instance.to_world.point((1.0 - u - v) * v0 + u * v1 + v * v2);
     const auto unit = [&](const glm::dvec3 &n) {
       return glm::vec3(glm::normalize(glm::transpose(instance.to_object.linear) * n));
@@ -112,12 +113,12 @@ public:
   }
 
   glm::vec4 value_at(const std::vector<lancer_node> &nodes, const Surface *s) {
-    const Program program = read_program(description, "test", nodes.data(), uint32_t(nodes.size()));
+    const Program program = read_program(description.images, "test", nodes.data(), uint32_t(nodes.size()));
     Parameter last;
     last.node = int32_t(nodes.size()) - 1;
+    const DescribedGeometry geometry(description);
     NodeContext context;
-    context.geometry = &description.geometry;
-    context.images = &description.images;
+    context.geometry = &geometry;
     context.normalisation = &normalisation;
     context.camera = camera;
     context.surface = s;
@@ -141,6 +142,31 @@ lancer_image image_of(const std::vector<Texel> &texels, uint32_t width, uint32_t
   image.kind = sizeof(Texel) == 1 ? LANCER_TEXEL_U8 : sizeof(Texel) == 2 ? LANCER_TEXEL_U16 : LANCER_TEXEL_FLOAT;
   image.matrix[0] = image.matrix[4] = image.matrix[8] = 1.0f;
   return image;
+}
+
+// Adds an image, which the program keeps.
+inline void hold(Program &program, Image image) {
+  program.images.push_back(image);
+  program.held.push_back(std::make_shared<const Image>(std::move(image)));
+}
+
+// Displaces the meshes without those of a scene before.
+inline void displace(Description &description, const BuildContext &context) {
+  MadeMeshes made;
+  lancer::displace(description, context, made);
+}
+
+// A world of one radiance.
+inline Given<World> constant_sky(const glm::vec3 &radiance) {
+  World world;
+  world.radiance.value = radiance;
+  return Given<World>(std::move(world));
+}
+
+// Returns the image as scenes read it.
+inline Image kept_image(const lancer_image &image) {
+  Messages messages;
+  return read_image(image, 0, messages);
 }
 
 // An image of floats whose colour is the position of the texel's centre: u, v, 0, 1.

@@ -15,13 +15,12 @@ class NodesLanes : public ::testing::Test {
 protected:
   Random random{7};
   NodeWorld world{random};
+  const DescribedGeometry geometry{world.description};
   NodeBlock block{};
   std::vector<NodeContext> places = std::vector<NodeContext>(kBlockLanes);
   std::vector<Surface> surfaces = std::vector<Surface>(kBlockLanes);
 
-  void SetUp() override {
-    block.scene = {&world.description.geometry, &world.description.images, &world.normalisation, &world.camera};
-  }
+  void SetUp() override { block.scene = {&geometry, &world.normalisation, &world.camera}; }
 
   template <class T> static void put(const glm::vec<3, T> &v, T (&to)[3][kBlockLanes], int lane) {
     for (int axis = 0; axis < 3; ++axis)
@@ -89,7 +88,7 @@ protected:
 
   // Runs the last node on any values of the nodes before it. Every kernel has to agree with one place at a time.
   void compare(const NodeCase &made) {
-    const Program program = read_program(world.description, "test", made.nodes.data(), uint32_t(made.nodes.size()));
+    const Program program = read_program(world.description.images, "test", made.nodes.data(), uint32_t(made.nodes.size()));
     const Schedule schedule{uint16_t(made.nodes.size() - 1)};
     std::vector<NodeLanes> given(made.nodes.size());
     for (NodeLanes &values : given)

@@ -8,8 +8,7 @@ using namespace lancer_test;
 namespace {
 
 Schedule schedule_of(const std::vector<lancer_node> &nodes, std::vector<int32_t> wanted) {
-  Description description;
-  const Program program = read_program(description, "test", nodes.data(), uint32_t(nodes.size()));
+  const Program program = read_program({}, "test", nodes.data(), uint32_t(nodes.size()));
   std::vector<Parameter> parameters;
   for (const int32_t number : wanted) {
     parameters.emplace_back();
@@ -41,10 +40,10 @@ TEST(NodesProgram, ABumpKeepsItsHeightToItself) {
                                           add(result_of(2), result_of(0)), bump};
   EXPECT_EQ(schedule_of(nodes, {4}), (Schedule{0, 1, 4}));
   EXPECT_EQ(schedule_of(nodes, {3, 4}), (Schedule{0, 1, 2, 3, 4}));
-  Description description;
-  const Program program = read_program(description, "test", nodes.data(), 5);
-  ASSERT_EQ(program.heights.size(), 1u);
-  EXPECT_EQ(program.heights[0], (Schedule{2, 3}));
+  const Program program = read_program({}, "test", nodes.data(), 5);
+  const ScheduleView heights = ProgramView(program).heights_of(program.nodes[4]);
+  ASSERT_EQ(program.height_nodes.size(), heights.size());
+  EXPECT_EQ(Schedule(heights.begin(), heights.end()), (Schedule{2, 3}));
 }
 
 TEST(NodesProgram, InputsThatAKindDoesNotReadAreNotRun) {
@@ -58,7 +57,7 @@ std::string refusal(const lancer_node &bad) {
   add_gradient(description, 2, 2);
   const std::vector<lancer_node> nodes = {node(LANCER_NODE_COORDINATE), bad};
   try {
-    read_program(description, "material 'Wood'", nodes.data(), 2);
+    read_program(description.images, "material 'Wood'", nodes.data(), 2);
   } catch (const Error &error) {
     EXPECT_EQ(error.fault(), Fault::Argument);
     return error.what();
@@ -93,15 +92,15 @@ TEST(NodesProgram, RefusalsNameMaterialNodeAndValue) {
   bad = node(LANCER_NODE_ENVIRONMENT, LANCER_ENVIRONMENT_CUBE);
   bad.image_count = 1;
   EXPECT_EQ(refusal(bad), "material 'Wood': node 1: 1 images for the 6 sides of a cube");
-  EXPECT_EQ(refusal(flagged(node(LANCER_NODE_IMAGE), 1024)), "material 'Wood': node 1: flags 1024 has bits beyond the last flag");
+  EXPECT_EQ(refusal(flagged(node(LANCER_NODE_IMAGE), 1024)),
+            "material 'Wood': node 1: flags 1024 has bits beyond the last flag");
   EXPECT_NE(refusal(flagged(node(LANCER_NODE_BUMP), 8)), "");
   EXPECT_NE(refusal(flagged(node(LANCER_NODE_SEPARATE), 1)), "");
   bad = node(LANCER_NODE_BUMP);
   bad.first = 2;
   EXPECT_EQ(refusal(bad), "material 'Wood': node 1: first 2 is a later node");
-  Description description;
-  EXPECT_THROW(read_program(description, "x", nullptr, 1), Error);
-  EXPECT_THROW(read_program(description, "x", &bad, 4097), Error);
+  EXPECT_THROW(read_program({}, "x", nullptr, 1), Error);
+  EXPECT_THROW(read_program({}, "x", &bad, 4097), Error);
 }
 
 lancer_material plain(const lancer_lobe &lobe) {
@@ -136,7 +135,7 @@ TEST(NodesProgram, MaterialsScheduleByQuestion) {
   source.displacement = result_of(4);
   Description description;
   add_material(description, source);
-  const Material &material = description.materials[0];
+  const Material &material = *description.materials[0];
   EXPECT_EQ(material.surface_nodes, (Schedule{0, 1, 2, 3}));
   EXPECT_EQ(material.emission_nodes, (Schedule{2}));
   EXPECT_EQ(material.transmittance_nodes, (Schedule{3}));
@@ -178,10 +177,10 @@ TEST(NodesProgram, ARefusedMaterialSaysNothing) {
   material.lobe_count = 2;
   Description description;
   EXPECT_THROW(add_material(description, material), Error);
-  EXPECT_EQ(description.messages.text(), "");
+  EXPECT_EQ(description.messages(), "");
   material.lobe_count = 1;
   add_material(description, material);
-  EXPECT_EQ(description.messages.text(), "material 'Wood': roughness 7 was replaced by 1\n");
+  EXPECT_EQ(description.messages(), "material 'Wood': roughness 7 was replaced by 1\n");
 }
 
 TEST(NodesProgram, ValuesOfNodesAreBroughtIntoRange) {
@@ -218,7 +217,7 @@ TEST(NodesProgram, MeshAttributesThatAreRefused) {
     try {
       add_mesh(description, mesh);
     } catch (const Error &) {
-      return description.geometry.meshes.empty();
+      return description.meshes.empty();
     }
     return false;
   };

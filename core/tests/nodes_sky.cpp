@@ -126,7 +126,7 @@ TEST(NodesSky, RefusesWhatIsNoTable) {
   const auto refused = [](SkyStage &&stage, uint32_t model) {
     lancer_node sky = node(LANCER_NODE_SKY, model);
     try {
-      read_program(stage.description, "test", &sky, 1);
+      read_program(stage.description.images, "test", &sky, 1);
     } catch (const std::exception &error) {
       return std::string(error.what()) == "test: node 0: image 0 is not a table of the sky";
     }

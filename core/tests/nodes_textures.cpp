@@ -232,7 +232,7 @@ TEST(NodesCurves, RefusesWhatIsNoTable) {
     lancer_node curves = node(LANCER_NODE_CURVES);
     curves.image = image;
     try {
-      read_program(description, "test", &curves, 1);
+      read_program(description.images, "test", &curves, 1);
     } catch (const std::exception &error) {
       return std::string(error.what());
     }
@@ -252,7 +252,7 @@ glm::vec4 grey(float value) { return {value, value, value, 1.0f}; }
 
 TEST(NodesObjectInfo, TellsWhatWasGiven) {
   Stage stage({2, 0, 0, 5, 0, 2, 0, 6, 0, 0, 2, 7});
-  stage.description.geometry.instances[0].object_index = 9;
+  stage.description.instances[0].object_index = 9;
   EXPECT_EQ(stage.value({node(LANCER_NODE_OBJECT_INFO, LANCER_OBJECT_COLOR)}), glm::vec4(1.0f));
   EXPECT_EQ(stage.value({node(LANCER_NODE_OBJECT_INFO, LANCER_OBJECT_RANDOM)}), grey(0.0f));
   stage.description.instances_given = 1;
@@ -289,7 +289,7 @@ TEST(NodesObjectInfo, ReadsAttributesByNameAndNumber) {
   EXPECT_EQ(value("warm"), none);
   EXPECT_EQ(value(""), none);
   // Rows are numbered in the order of adding, and an instance beyond the last row has 0.
-  description.geometry.instances[0].number = 1;
+  description.instances[0].number = 1;
   EXPECT_EQ(value("heat"), glm::vec4(-1.0f, 2.0f, 3.0f, 4.0f));
   EXPECT_EQ(value("cold"), none);
   EXPECT_EQ(stage.value_at({node(LANCER_NODE_OBJECT_INFO, LANCER_OBJECT_ATTRIBUTE)}, nullptr), grey(0.0f));
@@ -312,7 +312,7 @@ TEST(NodesObjectInfo, RefusesWrongAttributes) {
   EXPECT_EQ(refusal(nullptr, 1, good), "object attribute '': name is NULL");
   EXPECT_EQ(refusal("heat", 1, good), "");
   EXPECT_EQ(refusal("heat", 1, good), "object attribute 'heat': was added before");
-  EXPECT_EQ(description.geometry.object_attributes.size(), 1u);
+  EXPECT_EQ(description.object_attributes.size(), 1u);
 }
 
 TEST(NodesLightPath, TellsKindsAndCounts) {

@@ -15,18 +15,13 @@ using Voxel = std::array<double, 4>;
 struct Cube {
   uint32_t side;
   std::vector<float> texels;
-  Description description;
 
   Cube(uint32_t n, Random &random) : side(n), texels(size_t(n) * n * n * 4) {
     for (float &x : texels)
       x = uniform_number(random, 0.0f, 1.0f);
   }
 
-  const Image &image() {
-    description.images.clear();
-    add_image(description, image_of(texels, side, side * side));
-    return description.images.back();
-  }
+  Image image() const { return kept_image(image_of(texels, side, side * side)); }
 
   // The voxel at any indices; 0 outside.
   Voxel at(int x, int y, int z) const {
@@ -67,7 +62,7 @@ Voxel expected(const Cube &cube, const glm::vec3 &p, Interpolation interpolation
 }
 
 Voxel found(const Image &image, const glm::vec3 &p, Interpolation interpolation) {
-  const Texel<float> texel = look_up_voxels<float>(voxel_view(image, uint32_t(interpolation)), Vector3<float>{p.x, p.y, p.z});
+  const Texel<float> texel = look_up_voxels<float>(voxel_level(image, uint32_t(interpolation)), Vector3<float>{p.x, p.y, p.z});
   return {texel.color.x, texel.color.y, texel.color.z, texel.alpha};
 }
 
@@ -77,7 +72,7 @@ TEST(NodesVoxels, InterpolateAlongThreeAxes) {
   Random random{3};
   for (const uint32_t side : {1u, 2u, 5u}) {
     Cube cube(side, random);
-    const Image &image = cube.image();
+    const Image image = cube.image();
     for (int i = 0; i < 2000; ++i) {
       // Inside, across each border, and beyond.
       glm::vec3 p;
@@ -97,7 +92,7 @@ TEST(NodesVoxels, InterpolateAlongThreeAxes) {
 TEST(NodesVoxels, OutsideAndNowhereIsNothing) {
   Random random{4};
   Cube cube(4, random);
-  const Image &image = cube.image();
+  const Image image = cube.image();
   for (const Interpolation interpolation : kInterpolations)
     for (int axis = 0; axis < 3; ++axis)
       for (const float away : {-1.0f, 2.0f, 1e30f, -1e30f, NAN, INFINITY, -INFINITY}) {
@@ -112,7 +107,7 @@ TEST(NodesVoxels, VoxelsThatAreNoNumbersHideTheirNeighboursAlone) {
   Random random{5};
   Cube cube(4, random);
   cube.texels[0] = NAN;
-  const Image &image = cube.image();
+  const Image image = cube.image();
   for (const Interpolation interpolation : kInterpolations) {
     EXPECT_EQ(found(image, glm::vec3(0.125f), interpolation), Voxel{});
     EXPECT_NE(found(image, glm::vec3(0.875f), interpolation), Voxel{});

@@ -101,11 +101,13 @@ TEST(Principled, KeptLayersAreThoseMadeInPlace) {
     lobe.tangent = {1.0f, 0.0f, 0.0f};
     const bool inside = k % 2;
     ReadyLobe ready;
+    std::vector<std::unique_ptr<const CachedPlan>> plans;
     float f0;
     for (const LayerRow &row : kLayers)
       for (const bool side : {false, true})
         if (row.facets && (row.layer != PrincipledLayer::Gloss || plastic_ior(in, f0) != 1.0f))
-          ready.plans[side][static_cast<int>(row.layer)] = cached(plan_layer(row.layer, lobe, in, side));
+          ready.plans[side][static_cast<int>(row.layer)] =
+              plans.emplace_back(cached(plan_layer(row.layer, lobe, in, side))).get();
     const LaneLobes<float> kept{{&ready}, inside};
     const glm::vec3 wo = direction(random.uniform()), wi = direction(random.uniform(), 6.28 * random.uniform()), n(0, 0, 1);
     Bsdf<float> planned, in_place;

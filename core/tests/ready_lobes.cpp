@@ -15,33 +15,33 @@ using testing::direction;
 using testing::Random;
 
 // All layers.
-std::shared_ptr<PrincipledDescription> layered(Random &random) {
-  auto p = std::make_shared<PrincipledDescription>();
+PrincipledDescription layered(Random &random) {
+  PrincipledDescription p;
   const auto share = [&] { return Parameter{glm::vec3(0.2f + 0.6f * random.uniform())}; };
   for (Parameter PrincipledDescription::*input :
        {&PrincipledDescription::metallic, &PrincipledDescription::roughness, &PrincipledDescription::specular,
         &PrincipledDescription::anisotropic, &PrincipledDescription::transmission, &PrincipledDescription::coat,
         &PrincipledDescription::coat_roughness, &PrincipledDescription::sheen, &PrincipledDescription::sheen_roughness,
         &PrincipledDescription::diffuse_roughness})
-    (*p).*input = share();
+    p.*input = share();
   for (Parameter PrincipledDescription::*color :
        {&PrincipledDescription::base_color, &PrincipledDescription::specular_tint, &PrincipledDescription::coat_tint,
         &PrincipledDescription::sheen_tint, &PrincipledDescription::emission})
-    (*p).*color = Parameter{{random.uniform(), random.uniform(), random.uniform()}};
-  p->ior = Parameter{glm::vec3(1.1f + random.uniform())};
-  p->coat_ior = Parameter{glm::vec3(1.1f + random.uniform())};
+    p.*color = Parameter{{random.uniform(), random.uniform(), random.uniform()}};
+  p.ior = Parameter{glm::vec3(1.1f + random.uniform())};
+  p.coat_ior = Parameter{glm::vec3(1.1f + random.uniform())};
   return p;
 }
 
 // A material of one layered lobe, some of whose inputs are results of a node.
 struct Layered {
-  Layered(std::shared_ptr<const PrincipledDescription> principled, const Parameter &tangent) {
+  Layered(const PrincipledDescription &principled, const Parameter &tangent) {
     LobeDescription &lobe = material.lobes.emplace_back();
     lobe.kind = LobeKind::Principled;
-    lobe.principled = std::move(principled);
+    lobe.principled = principled;
     lobe.tangent = tangent;
     material.program.nodes.resize(1);
-    material.ready = make_ready_lobes(material);
+    ready = make_ready_lobes(material);
   }
 
   // Returns f |cos| of the lobe as a shader makes it for this value of the node, or made completely in place.
@@ -55,12 +55,13 @@ struct Layered {
     if (in_place)
       add_principled(bsdf, inputs, principled);
     else
-      add_principled(bsdf, inputs, principled, LaneLobes<float>{{&material.ready[0]}});
+      add_principled(bsdf, inputs, principled, LaneLobes<float>{{&ready[0]}});
     bsdf.complete();
     return bsdf.eval(wi).f() + bsdf.emission;
   }
 
   Material material;
+  ReadyLobes ready;
 };
 
 TEST(ReadyLobes, WhatANodeVariesIsMadeInPlace) {
@@ -90,9 +91,9 @@ TEST(ReadyLobes, WhatANodeVariesIsMadeInPlace) {
   fed.node = 0;
   for (int k = 0; k < 50; ++k)
     for (Parameter P::*input : inputs) {
-      const auto principled = layered(random);
+      PrincipledDescription principled = layered(random);
       if (input)
-        (*principled).*input = fed;
+        principled.*input = fed;
       // Without an input the tangent varies.
       const Layered layered(principled, input ? Parameter{glm::vec3(1.0f, 0.0f, 0.0f)} : fed);
       const glm::vec4 node(0.2f + random.uniform(), 0.3f, 0.4f, 1.0f);
@@ -116,7 +117,6 @@ Material of_facets(LobeKind kind, Rules rules = Rules::Blender45, Facets facets 
   lobe.weight = Parameter{{0.7f, 0.9f, 1.0f}};
   lobe.roughness = Parameter{glm::vec3(0.4f)};
   lobe.ior = Parameter{glm::vec3(1.25f)};
-  material.ready = make_ready_lobes(material);
   return material;
 }
 
@@ -144,8 +144,8 @@ TEST(ReadyLobes, PlannedFacetsAreThoseMadeInPlace) {
   for (const LobeKind kind : {LobeKind::Glossy, LobeKind::Conductor, LobeKind::Glass})
     for (const Facets facets : {Facets::Ggx, Facets::Beckmann, Facets::MultiGgx})
       for (const bool inside : {false, true}) {
-        const Material material = of_facets(kind, Rules::Blender45, facets);
-        const ReadyLobe &ready = material.ready[0];
+        const ReadyLobes lobes = make_ready_lobes(of_facets(kind, Rules::Blender45, facets));
+        const ReadyLobe &ready = lobes[0];
         const glm::vec3 wo = direction(0.2 + 0.7 * random.uniform()), wi = direction(0.7, 2.0), n(0.0f, 0.0f, 1.0f);
         Bsdf<float> planned, in_place;
         for (Bsdf<float> *bsdf : {&planned, &in_place}) {
@@ -164,23 +164,23 @@ TEST(ReadyLobes, PlannedFacetsAreThoseMadeInPlace) {
 }
 
 // A Principled with these shares of its layers.
-std::shared_ptr<const ReadyLobe[]> of_layers(float coat, float metallic, float transmission, float ior = 1.25f) {
-  auto p = std::make_shared<PrincipledDescription>();
-  p->coat = Parameter{glm::vec3(coat)};
-  p->metallic = Parameter{glm::vec3(metallic)};
-  p->transmission = Parameter{glm::vec3(transmission)};
-  p->ior = Parameter{glm::vec3(ior)};
-  p->specular = Parameter{glm::vec3(0.5f)};
+ReadyLobes of_layers(float coat, float metallic, float transmission, float ior = 1.25f) {
   Material material;
   LobeDescription &lobe = material.lobes.emplace_back();
   lobe.kind = LobeKind::Principled;
-  lobe.principled = std::move(p);
+  PrincipledDescription &p = lobe.principled.emplace();
+  p.coat = Parameter{glm::vec3(coat)};
+  p.metallic = Parameter{glm::vec3(metallic)};
+  p.transmission = Parameter{glm::vec3(transmission)};
+  p.ior = Parameter{glm::vec3(ior)};
+  p.specular = Parameter{glm::vec3(0.5f)};
   return make_ready_lobes(material);
 }
 
 TEST(ReadyLobes, LayersThatAreThereArePlannedForBothSides) {
   using L = PrincipledLayer;
-  const ReadyLobe all = of_layers(0.5f, 0.5f, 0.5f)[0], none = of_layers(0.0f, 0.0f, 0.0f, 1.0f)[0];
+  const ReadyLobes whole = of_layers(0.5f, 0.5f, 0.5f), bare = of_layers(0.0f, 0.0f, 0.0f, 1.0f);
+  const ReadyLobe &all = whole[0], &none = bare[0];
   for (const L layer : {L::Coat, L::Metal, L::Glass, L::Gloss}) {
     EXPECT_TRUE(all.has(layer));
     EXPECT_TRUE(all.plan(layer, true));

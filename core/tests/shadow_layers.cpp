@@ -63,7 +63,7 @@ glm::vec3 from_hit_to_hit(const Scene &scene, Shader &shader, Question question,
     if (!hit.valid())
       return light;
     const Surface surface = surface_at(scene.geometry, scene.slots, ray, hit);
-    const Material &material = scene.materials[surface.material];
+    const MaterialView &material = scene.materials[surface.material];
     if (question.passed + layers >= deepest || !material.is_transparent() || (material.flags & LANCER_MATERIAL_OPAQUE_SHADOWS))
       return glm::vec3(0.0f);
     light *=

@@ -8,29 +8,32 @@ namespace lancer {
 namespace {
 
 // A triangle without normals of its own, and the normals computed for a smooth instance.
-Geometry one_triangle(NormalDomain domain) {
-  Mesh mesh;
-  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-  mesh.triangles = {{0, 1, 2}};
+struct OneTriangle {
   const float r = std::sqrt(0.5f);
-  const std::vector<glm::vec3> bent = {{-r, 0, r}, {r, 0, r}, {0, r, r}};
-  mesh.normal_domain = domain;
-  (domain == NormalDomain::None ? mesh.smooth_normals : mesh.normals) = bent;
-  Geometry geometry;
-  geometry.meshes = {mesh};
-  for (const Shading shading : {Shading::AsMesh, Shading::Flat, Shading::Gouraud, Shading::Phong}) {
-    Instance instance;
-    instance.place(Affine{});
-    instance.shading = shading;
-    instance.terminator = 0.5f;
-    geometry.instances.push_back(instance);
+  const std::vector<glm::vec3> positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, bent = {{-r, 0, r}, {r, 0, r}, {0, r, r}};
+  const std::vector<glm::uvec3> triangles = {{0, 1, 2}};
+  MeshView mesh;
+  std::vector<Instance> instances;
+
+  explicit OneTriangle(NormalDomain domain) {
+    mesh.positions = positions;
+    mesh.triangles = triangles;
+    mesh.normal_domain = domain;
+    (domain == NormalDomain::None ? mesh.smooth_normals : mesh.normals) = bent;
+    for (const Shading shading : {Shading::AsMesh, Shading::Flat, Shading::Gouraud, Shading::Phong}) {
+      Instance &instance = instances.emplace_back();
+      instance.place(Affine{});
+      instance.shading = shading;
+      instance.terminator = 0.5f;
+    }
   }
-  return geometry;
-}
+  GeometryView geometry() const { return {{&mesh, 1}, instances, {}, {}}; }
+};
 
 TEST(SurfaceNormals, OnlyWhatIsShadedSmoothIsLifted) {
   for (const NormalDomain domain : {NormalDomain::None, NormalDomain::Vertex, NormalDomain::Corner}) {
-    const Geometry geometry = one_triangle(domain);
+    const OneTriangle triangle(domain);
+    const GeometryView geometry = triangle.geometry();
     for (uint32_t i = 0; i < 4; ++i) {
       const Shading shading = geometry.instances[i].shading;
       SCOPED_TRACE(int(shading));

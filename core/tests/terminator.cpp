@@ -65,10 +65,10 @@ struct Lifted {
   explicit Lifted(const Smooth &t, const glm::dvec3 &weights, const std::vector<double> &rows = kInPlace,
                   uint32_t domain = LANCER_NORMALS_VERTEX)
       : stage(SmoothMesh(t, domain).mesh, rows), b(weights) {
-    stage.description.geometry.instances[0].terminator = kLimit;
+    stage.description.instances[0].terminator = kLimit;
   }
   glm::dvec3 offset(const glm::vec3 &wi, const glm::vec3 &n = {0, 0, 1}, const glm::vec3 &ng = {0, 0, 1}) const {
-    return terminator_offset(stage.description.geometry, stage.surface(b.y, b.z), n, ng, wi);
+    return terminator_offset(DescribedGeometry(stage.description), stage.surface(b.y, b.z), n, ng, wi);
   }
 };
 
@@ -158,7 +158,7 @@ TEST(Terminator, IsNoneWhereTheSurfaceIsNotSmooth) {
   const Smooth t = facet(1.0, 0.4);
   const glm::dvec3 b(0.5, 0.3, 0.2), none(0.0);
   Lifted lifted(t, b);
-  Instance &instance = lifted.stage.description.geometry.instances[0];
+  Instance &instance = lifted.stage.description.instances[0];
   EXPECT_NE(lifted.offset(kGrazing), none);
   instance.terminator = 0.0f;
   EXPECT_EQ(lifted.offset(kGrazing), none);

@@ -41,15 +41,17 @@ private:
   virtual void find(std::span<const Ray> rays, std::span<uint8_t> occluded, HitFilter *filter) const = 0;
 };
 
-// geometry must outlive the accelerator.
-std::unique_ptr<Accelerator> build_accelerator(AcceleratorKind kind, const Geometry &geometry, const BuildContext &context);
+// The data that geometry refers to must outlive the accelerator. owners: keep the trees of their meshes for other scenes.
+std::unique_ptr<Accelerator> build_accelerator(AcceleratorKind kind, const GeometryView &geometry, const BuildContext &context,
+                                               MeshOwners owners = {});
 
 // The builders of each kind follow. A tree of instances over one wide tree per mesh. The environment variable LANCER_ISA
 // (scalar, sse4, avx2, avx512) selects a smaller instruction set than the processor has.
-std::unique_ptr<Accelerator> build_bvh(const Geometry &geometry, const BuildContext &context);
+std::unique_ptr<Accelerator> build_bvh(const GeometryView &geometry, const BuildContext &context, MeshOwners owners = {});
 // A kd-tree of instances over one kd-tree per mesh.
-std::unique_ptr<Accelerator> build_kdtree_accelerator(const Geometry &geometry, const BuildContext &context);
+std::unique_ptr<Accelerator> build_kdtree_accelerator(const GeometryView &geometry, const BuildContext &context,
+                                                      MeshOwners owners = {});
 // Every ray against every primitive: the reference for the other accelerators.
-std::unique_ptr<Accelerator> build_brute_force(const Geometry &geometry);
+std::unique_ptr<Accelerator> build_brute_force(const GeometryView &geometry);
 
 } // namespace lancer

@@ -139,7 +139,7 @@ struct Counting {
   bool operator()(const Hit &hit) const { return !filter || !filter->instances[hit.instance] || filter->counts(ray, hit); }
 };
 
-inline void try_triangle(const Ray &ray, const RayAxes &axes, const ShearedRay<double> &sheared, const Mesh &mesh,
+inline void try_triangle(const Ray &ray, const RayAxes &axes, const ShearedRay<double> &sheared, const MeshView &mesh,
                          uint32_t instance, uint32_t triangle, const Counting &counting, Hit &best) {
   if (ray.skip_instance == instance && ray.skip_primitive == triangle)
     return;

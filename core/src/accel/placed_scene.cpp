@@ -9,18 +9,6 @@
 namespace lancer {
 namespace {
 
-struct Extent {
-  glm::dvec3 lo{std::numeric_limits<double>::infinity()};
-  glm::dvec3 hi{-std::numeric_limits<double>::infinity()};
-
-  void grow(const glm::dvec3 &p) {
-    lo = glm::min(lo, p);
-    hi = glm::max(hi, p);
-  }
-  glm::dvec3 middle() const { return 0.5 * lo + 0.5 * hi; }
-  glm::dvec3 half() const { return 0.5 * hi - 0.5 * lo; }
-};
-
 bool finite(const glm::dvec3 &v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 PlacementFrame make_frame(const Extent &e) {
@@ -44,37 +32,6 @@ Box make_box(const PlacementFrame &frame, const Extent &e) {
   }
   box.lo[3] = box.hi[3] = 0.0f;
   return box;
-}
-
-Extent mesh_extent(const Mesh &mesh) {
-  Extent e;
-  for (const glm::uvec3 &triangle : mesh.triangles)
-    for (int corner = 0; corner < 3; ++corner)
-      e.grow(glm::dvec3(mesh.positions[triangle[corner]]));
-  return e;
-}
-
-// Bounds a mesh by the boxes of its vertices in the cells of a grid. The bounds of these boxes stay nearly tight when the mesh
-// is rotated, whereas a single box grows by up to a factor of 1.7. In a field of rotated copies, a sample costs an eighth less.
-std::vector<Extent> mesh_cells(const Mesh &mesh, const Extent &whole) {
-  constexpr uint32_t kSide = 4;
-  Extent cells[kSide][kSide][kSide];
-  const glm::dvec3 size = whole.hi - whole.lo;
-  for (const glm::uvec3 &triangle : mesh.triangles)
-    for (int corner = 0; corner < 3; ++corner) {
-      const glm::dvec3 p = mesh.positions[triangle[corner]];
-      uint32_t cell[3];
-      for (int axis = 0; axis < 3; ++axis)
-        cell[axis] = std::min(static_cast<uint32_t>(kSide * (size[axis] > 0.0 ? (p[axis] - whole.lo[axis]) / size[axis] : 0.0)),
-                              kSide - 1);
-      cells[cell[0]][cell[1]][cell[2]].grow(p);
-    }
-  std::vector<Extent> filled;
-  for (const auto &plane : cells)
-    for (const auto &row : plane)
-      std::copy_if(std::begin(row), std::end(row), std::back_inserter(filled),
-                   [](const Extent &e) { return e.lo.x <= e.hi.x; });
-  return filled;
 }
 
 glm::dmat3 magnitudes(const glm::dmat3 &m) { return {glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2])}; }
@@ -130,7 +87,9 @@ PlacedShape make_shape(const Instance &instance, const std::vector<PlacementFram
 
 } // namespace
 
-PlacedScene place_scene(const Geometry &geometry) {
+PlacementFrame mesh_frame(const Extent &faces) { return faces.empty() ? PlacementFrame{} : make_frame(faces); }
+
+PlacedScene place_scene(const GeometryView &geometry, MeshOwners owners) {
   PlacedScene scene;
   std::vector<uint32_t> uses(geometry.meshes.size(), 0);
   for (const Instance &instance : geometry.instances)
@@ -138,11 +97,11 @@ PlacedScene place_scene(const Geometry &geometry) {
       ++uses[instance.mesh];
   std::vector<std::vector<Extent>> mesh_parts; // a single box for meshes with one instance
   for (size_t i = 0; i < geometry.meshes.size(); ++i) {
-    const Mesh &mesh = geometry.meshes[i];
-    const Extent whole = mesh_extent(mesh);
-    scene.mesh_frames.push_back(mesh.triangles.empty() ? PlacementFrame{} : make_frame(whole));
+    const MeshView &mesh = geometry.meshes[i];
+    const Extent whole = bounds_of(mesh, owner_of(owners, i))->faces;
+    mesh_parts.push_back(uses[i] > 1 ? cells_of(mesh, whole, owner_of(owners, i))->boxes : std::vector{whole});
+    scene.mesh_frames.push_back(mesh_frame(whole));
     scene.mesh_reach.push_back(glm::max(glm::abs(whole.lo), glm::abs(whole.hi)));
-    mesh_parts.push_back(uses[i] > 1 ? mesh_cells(mesh, whole) : std::vector{whole});
   }
 
   // Place every instance; find the world box of each bounded one.
@@ -177,7 +136,7 @@ PlacedScene place_scene(const Geometry &geometry) {
   return scene;
 }
 
-PlacedTriangleBoxes::PlacedTriangleBoxes(const Mesh &m, const Instance &instance, const glm::dvec3 &reach,
+PlacedTriangleBoxes::PlacedTriangleBoxes(const MeshView &m, const Instance &instance, const glm::dvec3 &reach,
                                          const PlacementFrame &w)
     : mesh(m), to_world(instance.to_world), moved(magnitudes(instance.to_world.linear) * round_trip(instance, reach)),
       world(w) {}
@@ -191,7 +150,7 @@ Box PlacedTriangleBoxes::operator()(uint32_t triangle) const {
   return make_box(world, e);
 }
 
-Box triangle_box(const Mesh &mesh, const PlacementFrame &frame, uint32_t triangle) {
+Box triangle_box(const MeshView &mesh, const PlacementFrame &frame, uint32_t triangle) {
   Extent e;
   for (int corner = 0; corner < 3; ++corner)
     e.grow(glm::dvec3(mesh.vertex(triangle, corner)));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "accel/bounds.h"
+#include "accel/mesh_bounds.h"
 #include "accel/placed_shape.h"
 #include "scene/geometry.h"
 
@@ -21,20 +22,23 @@ struct PlacedScene {
   size_t bytes() const;
 };
 
-PlacedScene place_scene(const Geometry &geometry);
+PlacedScene place_scene(const GeometryView &geometry, MeshOwners owners = {});
+
+// Returns the frame of a mesh with these bounds of its faces.
+PlacementFrame mesh_frame(const Extent &faces);
 
 // Returns the box of a triangle in its mesh's frame, padded by kBoxPad.
-Box triangle_box(const Mesh &mesh, const PlacementFrame &frame, uint32_t triangle);
+Box triangle_box(const MeshView &mesh, const PlacementFrame &frame, uint32_t triangle);
 
 // Boxes of an instance's triangles in the frame of the world.
 class PlacedTriangleBoxes {
 public:
   // reach: the largest absolute coordinates of the mesh.
-  PlacedTriangleBoxes(const Mesh &mesh, const Instance &instance, const glm::dvec3 &reach, const PlacementFrame &world);
+  PlacedTriangleBoxes(const MeshView &mesh, const Instance &instance, const glm::dvec3 &reach, const PlacementFrame &world);
   Box operator()(uint32_t triangle) const;
 
 private:
-  const Mesh &mesh;
+  const MeshView mesh;
   const Affine to_world;
   const glm::dvec3 moved; // bound on the displacement of a point by rounding
   const PlacementFrame world;

@@ -18,12 +18,12 @@ namespace tables {
 
 inline constexpr int kFine = 32, kCoarse = 16;
 // Values in 0 ... 1 as sixteen bits; first index slowest.
-extern const uint16_t kGgx[kFine * kFine];                         // [cosine][roughness]
-extern const uint16_t kGgxMean[kFine];                             // [roughness]
-extern const uint16_t kGlass[2][kCoarse * kCoarse * kCoarse];      // from outside, inside: [index][cosine][roughness]
-extern const uint16_t kGlassMean[2][kCoarse * kCoarse];            // [index][roughness]
-extern const uint16_t kDielectricMix[kCoarse * kCoarse * kCoarse]; // [index][cosine][roughness]
-extern const uint16_t kFifthPowerMix[kCoarse * kCoarse];           // [cosine][roughness]
+LANCER_TABLE uint16_t kGgx[kFine * kFine];                         // [cosine][roughness]
+LANCER_TABLE uint16_t kGgxMean[kFine];                             // [roughness]
+LANCER_TABLE uint16_t kGlass[2][kCoarse * kCoarse * kCoarse];      // from outside, inside: [index][cosine][roughness]
+LANCER_TABLE uint16_t kGlassMean[2][kCoarse * kCoarse];            // [index][roughness]
+LANCER_TABLE uint16_t kDielectricMix[kCoarse * kCoarse * kCoarse]; // [index][cosine][roughness]
+LANCER_TABLE uint16_t kFifthPowerMix[kCoarse * kCoarse];           // [cosine][roughness]
 
 // Position of x between the nodes of an axis: the node before it, and the fraction of the way to the next.
 template <class F> struct AxisPlace { F node, rest; };

@@ -39,9 +39,9 @@ struct CachedPlan {
   // the Fresnel curve.
   float single[tables::kFine] = {}, mix[tables::kCoarse] = {};
 };
-inline std::shared_ptr<const CachedPlan> cached(const MicrofacetPlan<float> &plan) {
+inline std::unique_ptr<const CachedPlan> cached(const MicrofacetPlan<float> &plan) {
   const AlbedoLookup<float> tables;
-  const auto kept = std::make_shared<CachedPlan>();
+  auto kept = std::make_unique<CachedPlan>();
   kept->plan = plan;
   const int singles = refracts(plan.lobe) ? tables::kCoarse : tables::kFine;
   for (int i = 0; i < singles; ++i)

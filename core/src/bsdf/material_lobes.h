@@ -27,14 +27,22 @@ struct ReadyLobe {
   PrincipledInputs<float> principled;
   LobeParts parts;
   // By side (outside, inside) and Layer. The facets of other lobes are stored at PrincipledLayer::Gloss.
-  std::shared_ptr<const CachedPlan> plans[2][kLayerCount];
+  const CachedPlan *plans[2][kLayerCount] = {};
 
   // Returns a key of the code that the lobe runs, as far as it does not depend on results of nodes. Lobes with equal keys
   // differ in numbers alone.
   std::string code() const;
 
   bool has(PrincipledLayer layer) const { return plans[0][static_cast<int>(layer)] != nullptr; }
-  const CachedPlan *plan(PrincipledLayer layer, bool inside) const { return plans[inside][static_cast<int>(layer)].get(); }
+  const CachedPlan *plan(PrincipledLayer layer, bool inside) const { return plans[inside][static_cast<int>(layer)]; }
+};
+
+// The memory of a material's ready lobes.
+struct ReadyLobes {
+  std::vector<ReadyLobe> lobes;
+  std::vector<std::unique_ptr<const CachedPlan>> plans; // of the lobes
+
+  const ReadyLobe &operator[](size_t number) const { return lobes[number]; }
 };
 
 #define LANCER_NAME(kind, name, spoken, given) name,
@@ -190,7 +198,7 @@ template <class F> struct LaneLobes : LaneRecords<F, ReadyLobe> {
 // Adds the lobes of one described lobe. number: of the described lobe among the material's. values: returns a parameter's value
 // in every lane. hole: lanes whose lobes a holdout hides.
 template <class F, class Values>
-void add_described(const Material *const *materials, size_t number, const Values &values, MaskOf<F> hole, Bsdf<F> &bsdf) {
+void add_described(const MaterialView *const *materials, size_t number, const Values &values, MaskOf<F> hole, Bsdf<F> &bsdf) {
   const LobeDescription &described = materials[0]->lobes[number];
   LaneLobes<F> ready;
   ready.inside = bits(bsdf.inside);
@@ -229,9 +237,9 @@ template <class F> struct AskingPaths {
 
 // Adds all lobes of the material as seen from wo. out_ns, out_ng: of the surface, outwards.
 template <class F, class Values>
-LANCER_LANE void find_lobes(const Material *const *materials, const Values &values, MaskOf<F> hole, const Vec3<F> &wo,
+LANCER_LANE void find_lobes(const MaterialView *const *materials, const Values &values, MaskOf<F> hole, const Vec3<F> &wo,
                             const Vec3<F> &out_ns, const Vec3<F> &out_ng, Bsdf<F> &bsdf, const AskingPaths<F> &paths = {}) {
-  const Material &material = *materials[0];
+  const MaterialView &material = *materials[0];
   // Turn both normals to the viewer's side.
   const MaskOf<F> inside = dot(wo, out_ng) < F(0.0f);
   Vec3<F> ns = select(inside, -out_ns, out_ns);

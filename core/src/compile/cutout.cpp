@@ -10,30 +10,31 @@ namespace lancer {
 namespace {
 
 // Returns the node whose result is the parameter, if the node is of this kind; otherwise null.
-const Node *source(const Program &program, const Parameter &parameter, uint32_t kind) {
+const Node *source(const ProgramView &program, const Parameter &parameter, uint32_t kind) {
   const Node *node = program.source(parameter);
   return node && node->kind == kind ? node : nullptr;
 }
 
-const Node *math_source(const Program &program, const Parameter &parameter, uint32_t operation, uint32_t flags) {
+const Node *math_source(const ProgramView &program, const Parameter &parameter, uint32_t operation, uint32_t flags) {
   const Node *node = source(program, parameter, NodeKind::Math);
   return node && node->option == operation && node->flags == flags ? node : nullptr;
 }
 
 } // namespace
 
-FlatImage flat_image(const Program &program, const Parameter &color, const std::vector<Image> &images) {
+FlatImage flat_image(const ProgramView &program, const Parameter &color) {
   const Node *picture = source(program, color, NodeKind::Image);
-  if (!picture || picture->option != ImageProjection::Flat || picture->image_count != 1 || images[picture->image].tile != 0)
+  if (!picture || picture->option != ImageProjection::Flat || picture->image_count != 1 ||
+      program.images[picture->image].tile != 0)
     return {};
   const Node *place = source(program, picture->inputs[0], NodeKind::Coordinate);
   if (!place || place->option != Coordinate::Uv)
     return {};
-  return {picture->image, place->name, static_cast<Extension>(picture->flags & 0xf),
+  return {&program.images[picture->image], place->name, static_cast<Extension>(picture->flags & 0xf),
           static_cast<Interpolation>(picture->flags >> 4 & 0xf)};
 }
 
-std::optional<ImageAlpha> image_alpha(const Program &program, const Parameter &value) {
+std::optional<ImageAlpha> image_alpha(const ProgramView &program, const Parameter &value) {
   // A node that adds 0 serves only to clamp its result.
   const Node *clamp = math_source(program, value, MathOperation::Add, 1);
   if (clamp && (clamp->inputs[1].varies() || clamp->inputs[1].value.x != 0.0f))
@@ -44,7 +45,7 @@ std::optional<ImageAlpha> image_alpha(const Program &program, const Parameter &v
   return ImageAlpha{alpha->inputs[0], clamp != nullptr};
 }
 
-std::optional<Remainder> remainder_of(const Program &program, const Parameter &value) {
+std::optional<Remainder> remainder_of(const ProgramView &program, const Parameter &value) {
   const Node *difference = math_source(program, value, MathOperation::Subtract, 0);
   if (!difference || difference->inputs[0].varies())
     return {};
@@ -54,7 +55,7 @@ std::optional<Remainder> remainder_of(const Program &program, const Parameter &v
 namespace {
 
 // Follows the transmittance 1 - alpha back to the image and its UV map. share: receives the parameter of alpha.
-AlphaImage find_alpha(const Material &material, const std::vector<Image> &images, Parameter &share) {
+AlphaImage find_alpha(const MaterialView &material, Parameter &share) {
   const std::optional<Remainder> rest = remainder_of(material.program, material.transmittance);
   if (!rest || rest->whole != 1.0f)
     return {};
@@ -62,7 +63,7 @@ AlphaImage find_alpha(const Material &material, const std::vector<Image> &images
   const std::optional<ImageAlpha> alpha = image_alpha(material.program, share);
   if (!alpha)
     return {};
-  return {flat_image(material.program, alpha->picture, images), alpha->clamped};
+  return {flat_image(material.program, alpha->picture), alpha->clamped};
 }
 
 // Whether a node reads only its inputs, the triangle and the place within it.
@@ -84,17 +85,19 @@ bool is_painted(const Node &node) {
   }
 }
 
-bool all_painted(const Program &program, const Schedule &schedule) {
+bool all_painted(const ProgramView &program, ScheduleView schedule) {
   return std::ranges::all_of(schedule, [&](uint16_t node) { return is_painted(program.nodes[node]); });
 }
 
-Cutout recognise(const Material &material, const std::vector<Image> &images) {
+} // namespace
+
+Cutout make_cutout(const MaterialView &material) {
   Cutout cutout;
   // Levels of images are chosen by the ray.
   if (!material.transmittance.varies() || material.program.mipmapped)
     return cutout;
   Parameter share;
-  cutout.alpha = find_alpha(material, images, share);
+  cutout.alpha = find_alpha(material, share);
   cutout.painted = all_painted(material.program, material.transmittance_nodes);
   cutout.ends_with_alpha = cutout.alpha.known();
   // The surface may vanish where it neither emits nor is a holdout, and where each lobe's weight varies.
@@ -111,19 +114,9 @@ Cutout recognise(const Material &material, const std::vector<Image> &images) {
   return cutout;
 }
 
-} // namespace
-
-std::vector<Cutout> make_cutouts(const std::vector<Material> &materials, const std::vector<Image> &images) {
-  std::vector<Cutout> cutouts;
-  for (const Material &material : materials)
-    cutouts.push_back(recognise(material, images));
-  return cutouts;
-}
-
-float alpha_at(const AlphaImage &picture, const std::vector<Image> &images, const Mesh &mesh, uint32_t triangle,
-               const glm::dvec2 &bary) {
+float alpha_at(const AlphaImage &picture, const MeshView &mesh, uint32_t triangle, const glm::dvec2 &bary) {
   const glm::vec2 uv = uv_at(mesh, picture.uv_map, triangle, bary);
-  const float alpha = lookup_alpha(images[picture.image], uv, picture.extension, picture.interpolation);
+  const float alpha = lookup_alpha(*picture.image, uv, picture.extension, picture.interpolation);
   return clamped_alpha(alpha, picture.clamped);
 }
 

@@ -10,16 +10,16 @@ namespace lancer {
 
 // An image whose place on a mesh depends on a UV map alone.
 struct FlatImage {
-  uint32_t image = kNone;
+  const ImageView *image = nullptr;
   uint32_t uv_map = 0; // number of its name
   Extension extension = Extension::Repeat;
   Interpolation interpolation = Interpolation::Linear;
 
-  bool known() const { return image != kNone; }
+  bool known() const { return image != nullptr; }
 };
 
 // Returns the image whose colour a parameter is; known() is false if the parameter is not the colour of a flat image.
-FlatImage flat_image(const Program &program, const Parameter &color, const std::vector<Image> &images);
+FlatImage flat_image(const ProgramView &program, const Parameter &color);
 
 // The alpha of an image: unchanged, or clamped to 0 ... 1 as the factor of a shader mix.
 struct ImageAlpha {
@@ -27,7 +27,7 @@ struct ImageAlpha {
   bool clamped = false;
 };
 // Returns nothing where the value is anything else.
-std::optional<ImageAlpha> image_alpha(const Program &program, const Parameter &value);
+std::optional<ImageAlpha> image_alpha(const ProgramView &program, const Parameter &value);
 
 inline float clamped_alpha(float alpha, bool clamped) { return clamped ? glm::clamp(alpha, 0.0f, 1.0f) : alpha; }
 
@@ -37,7 +37,7 @@ struct Remainder {
   Parameter share;
 };
 // Returns nothing where the value is anything else.
-std::optional<Remainder> remainder_of(const Program &program, const Parameter &value);
+std::optional<Remainder> remainder_of(const ProgramView &program, const Parameter &value);
 
 // A surface cut out by an image: its transmittance is known without shading.
 
@@ -54,11 +54,10 @@ struct Cutout {
   Schedule nodes;               // of the transmittance and the lobes' weights
 };
 
-// Returns one record per material, in the order of the materials.
-std::vector<Cutout> make_cutouts(const std::vector<Material> &materials, const std::vector<Image> &images);
+// The material's memory must outlive the record.
+Cutout make_cutout(const MaterialView &material);
 
 // Returns the alpha at a point of a triangle, as nodes compute it. bary: as Surface::bary.
-float alpha_at(const AlphaImage &picture, const std::vector<Image> &images, const Mesh &mesh, uint32_t triangle,
-               const glm::dvec2 &bary);
+float alpha_at(const AlphaImage &picture, const MeshView &mesh, uint32_t triangle, const glm::dvec2 &bary);
 
 } // namespace lancer

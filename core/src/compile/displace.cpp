@@ -6,6 +6,8 @@
 #include "scene/surface.h"
 #include "simd/parallel.h"
 
+#include <algorithm>
+#include <cstring>
 #include <map>
 
 namespace lancer {
@@ -26,36 +28,44 @@ struct Place {
 // Displaces one mesh by the materials of an instance.
 class Displacement {
 public:
-  Displacement(Description &description, const BuildContext &context, const Move &move)
+  // views: of all meshes of the description; the displaced one is updated. attributes: of its objects.
+  Displacement(const Description &description, std::span<MeshView> views, std::span<const ObjectAttributeView> attributes,
+               const BuildContext &context, const Move &move)
       : description_(description), context_(context), number_(move.instance), given_mesh_(move.given_mesh),
-        instance_(description.geometry.instances[number_]), mesh_(description.geometry.meshes[instance_.mesh]) {}
+        instance_(description.instances[number_]), views_(views),
+        geometry_{views, description.instances, description.object_infos, attributes} {}
 
-  void run() {
+  // Returns the displaced mesh; the given one if no face is displaced.
+  std::shared_ptr<const Mesh> run() {
     find_places();
     if (places_.empty())
-      return;
+      return description_.meshes[instance_.mesh].object;
+    mesh_ = *description_.meshes[instance_.mesh];
     keep_positions();
     move_vertices();
     drop_flat_faces();
     renew_normals(mesh_, renews_);
+    return std::make_shared<const Mesh>(std::move(mesh_));
   }
+  const Messages &messages() const { return messages_; }
 
 private:
   // Collects each vertex of each material once, at the first face that has the vertex.
   void find_places() {
-    renews_.assign(mesh_.triangles.size(), false);
+    const MeshView &mesh = views_[instance_.mesh];
+    renews_.assign(mesh.triangles.size(), false);
     std::map<uint32_t, std::vector<bool>> done;
-    for (uint32_t i = 0; i < mesh_.triangles.size(); ++i) {
-      const uint32_t material = material_of(description_.geometry, description_.slots, number_, i);
-      if (material == kNone || !description_.materials[material].displaces())
+    for (uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+      const uint32_t material = material_of(geometry_, description_.slots, number_, i);
+      if (material == kNone || !description_.materials[material]->displaces())
         continue;
-      const bool keeps = description_.materials[material].flags & MaterialFlag::KeepNormals;
+      const bool keeps = description_.materials[material]->flags & MaterialFlag::KeepNormals;
       renews_[i] = !keeps;
       keeps_ |= keeps;
       std::vector<bool> &seen = done[material];
-      seen.resize(mesh_.positions.size());
+      seen.resize(mesh.positions.size());
       for (int corner = 0; corner < 3; ++corner) {
-        const uint32_t vertex = mesh_.triangles[i][corner];
+        const uint32_t vertex = mesh.triangles[i][corner];
         if (!seen[vertex])
           places_.push_back({vertex, i, material, corner});
         seen[vertex] = true;
@@ -67,17 +77,13 @@ private:
   void keep_positions() {
     if (!keeps_)
       return;
-    MeshAttribute attribute;
-    attribute.name = kUndisplaced;
-    attribute.domain = Domain::Vertex;
-    attribute.channels = 3;
+    mesh_.add_attribute(kUndisplaced, Domain::Vertex, 3);
     for (const glm::vec3 &p : mesh_.positions)
-      attribute.values.insert(attribute.values.end(), {p.x, p.y, p.z});
-    mesh_.attributes.push_back(std::move(attribute));
+      mesh_.attribute_values.insert(mesh_.attribute_values.end(), {p.x, p.y, p.z});
   }
 
   glm::dvec3 offset(const Place &place, const std::vector<glm::vec3> &normals, std::span<glm::vec4> values) const {
-    const Material &material = description_.materials[place.material];
+    const Material &material = *description_.materials[place.material];
     Surface surface;
     surface.instance = number_;
     surface.primitive = place.triangle;
@@ -91,8 +97,7 @@ private:
       surface.ns = surface.ng;
     static const Normalisation unchanged;
     NodeContext context;
-    context.geometry = &description_.geometry;
-    context.images = &description_.images;
+    context.geometry = &geometry_;
     context.normalisation = &unchanged;
     context.surface = &surface;
     context.wo = surface.ng;
@@ -102,11 +107,12 @@ private:
   }
 
   void move_vertices() {
+    views_[instance_.mesh] = mesh_;
     const std::vector<glm::vec3> normals = vertex_normals(mesh_);
     std::vector<glm::dvec3> offsets(places_.size());
     size_t most = 0;
-    for (const Material &material : description_.materials)
-      most = std::max(most, material.program.value_count());
+    for (const Given<Material> &material : description_.materials)
+      most = std::max(most, material->program.value_count());
     constexpr size_t at_once = 4096;
     parallel_for(context_, (places_.size() + at_once - 1) / at_once, [&](size_t piece) {
       std::vector<glm::vec4> values(most);
@@ -140,7 +146,7 @@ private:
         renews_[kept.size()] = renews_[i];
         kept.push_back(i);
       } else {
-        ++flat[material_of(description_.geometry, description_.slots, number_, i)];
+        ++flat[material_of(geometry_, description_.slots, number_, i)];
       }
     }
     if (flat.empty())
@@ -149,29 +155,32 @@ private:
     tell(flat, "faces", "that displacement leaves without area were left out");
   }
 
-  void tell(const std::map<uint32_t, size_t> &counts, const char *things, const char *what) const {
+  void tell(const std::map<uint32_t, size_t> &counts, const char *things, const char *what) {
     const std::string object = label("mesh", mesh_.name.c_str(), given_mesh_);
     for (const auto &[material, count] : counts) {
       const std::string of =
-          material == kNone ? "" : "of " + label("material", description_.materials[material].name.c_str(), material) + " ";
-      description_.messages.add(object, std::to_string(count) + " " + things + " " + of + what);
+          material == kNone ? "" : "of " + label("material", description_.materials[material]->name.c_str(), material) + " ";
+      messages_.add(object, std::to_string(count) + " " + things + " " + of + what);
     }
   }
 
-  Description &description_;
+  const Description &description_;
   const BuildContext &context_;
   uint32_t number_, given_mesh_;
   const Instance &instance_;
-  Mesh &mesh_;
+  std::span<MeshView> views_;
+  const GeometryView geometry_;
+  Mesh mesh_; // the displaced copy
   std::vector<bool> renews_; // per triangle: its material displaces, and its normals are recomputed
   bool keeps_ = false;       // some displaced triangle keeps its normals
   std::vector<Place> places_;
+  Messages messages_;
 };
 
 // Returns one triangle for each material slot that occurs.
-std::vector<uint32_t> parts_of(const Mesh &mesh, const BuildContext &context) {
+std::vector<uint32_t> parts_of(const MeshView &mesh, const BuildContext &context) {
   constexpr uint32_t between_polls = 1u << 16;
-  const std::vector<uint16_t> &slots = mesh.material_slots;
+  const std::span<const uint16_t> slots = mesh.material_slots;
   std::map<uint16_t, uint32_t> first;
   for (uint32_t i = 0; i < slots.size(); ++i) {
     if (i % between_polls == 0)
@@ -189,34 +198,37 @@ std::vector<uint32_t> parts_of(const Mesh &mesh, const BuildContext &context) {
 }
 
 // Copies a mesh for each further list of displacing materials among its instances; instances without displacement have one list
-// in common. Returns the first instance of each list.
+// in common. Returns the first instance of each list that displaces.
 std::vector<Move> separate(Description &description, const BuildContext &context) {
-  Geometry &geometry = description.geometry;
+  std::vector<MeshView> views;
   std::vector<std::vector<uint32_t>> parts;
-  for (const Mesh &mesh : geometry.meshes) {
+  for (const Given<Mesh> &mesh : description.meshes) {
     poll_cancel(context);
-    parts.push_back(parts_of(mesh, context));
+    parts.push_back(parts_of(views.emplace_back(*mesh), context));
   }
+  const GeometryView geometry{views, description.instances, {}, {}};
   std::map<std::pair<uint32_t, std::vector<uint32_t>>, uint32_t> meshes; // by the mesh of the description and the materials
                                                                          // that displace it
-  std::vector<bool> taken(geometry.meshes.size());
+  std::vector<bool> taken(views.size());
   std::vector<Move> firsts;
-  for (uint32_t i = 0; i < geometry.instances.size(); ++i) {
-    Instance &instance = geometry.instances[i];
+  for (uint32_t i = 0; i < description.instances.size(); ++i) {
+    Instance &instance = description.instances[i];
     if (instance.kind != ShapeKind::Mesh)
       continue;
     std::vector<uint32_t> movers;
     for (const uint32_t triangle : parts[instance.mesh]) {
       const uint32_t material = material_of(geometry, description.slots, i, triangle);
-      movers.push_back(material != kNone && description.materials[material].displaces() ? material : kNone);
+      movers.push_back(material != kNone && description.materials[material]->displaces() ? material : kNone);
     }
+    const bool moves = std::ranges::any_of(movers, [](uint32_t mover) { return mover != kNone; });
     const auto [known, fresh] = meshes.emplace(std::pair(instance.mesh, std::move(movers)), instance.mesh);
     if (fresh) {
       poll_cancel(context);
-      firsts.push_back({i, instance.mesh});
+      if (moves)
+        firsts.push_back({i, instance.mesh});
       if (taken[instance.mesh]) {
-        known->second = uint32_t(geometry.meshes.size());
-        geometry.meshes.push_back(Mesh(geometry.meshes[instance.mesh]));
+        known->second = uint32_t(description.meshes.size());
+        description.meshes.push_back(description.meshes[instance.mesh]);
       }
       taken[known->first.first] = true;
     }
@@ -227,12 +239,59 @@ std::vector<Move> separate(Description &description, const BuildContext &context
 
 } // namespace
 
-void displace(Description &description, const BuildContext &context) {
-  for (const Move &move : separate(description, context)) {
+bool DisplacedMesh::same_source(const DisplacedMesh &other) const {
+  const auto bits = [](const auto &a, const auto &b) { return std::memcmp(&a, &b, sizeof a) == 0; };
+  return from == other.from && number == other.number && slots == other.slots && materials == other.materials &&
+         bits(instance.to_world, other.instance.to_world) && instance.object_index == other.instance.object_index &&
+         bits(info, other.info) && std::ranges::equal(attributes, other.attributes, bits);
+}
+
+namespace {
+
+// Returns the source of a displaced mesh.
+DisplacedMesh source_of(const Description &description, const Move &move) {
+  DisplacedMesh source;
+  source.instance = description.instances[move.instance];
+  source.from = description.meshes[source.instance.mesh].object;
+  source.number = move.given_mesh;
+  for (uint32_t i = 0; i < source.instance.slot_count; ++i) {
+    source.slots.push_back(description.slots[source.instance.first_slot + i]);
+    source.materials.push_back(description.materials[source.slots.back()].object);
+  }
+  const uint32_t number = source.instance.number;
+  if (number < description.object_infos.size())
+    source.info = description.object_infos[number];
+  for (const ObjectAttribute &attribute : description.object_attributes)
+    source.attributes.emplace_back(attribute.name,
+                                   number < attribute.values.size() ? attribute.values[number] : glm::vec4(0.0f));
+  return source;
+}
+
+} // namespace
+
+void displace(Description &description, const BuildContext &context, MadeMeshes &made, const MadeMeshes *before) {
+  const std::vector<Move> moves = separate(description, context);
+  std::vector<MeshView> views;
+  for (const Given<Mesh> &mesh : description.meshes)
+    views.push_back(*mesh);
+  const std::vector<ObjectAttributeView> attributes = views_of(description.object_attributes);
+  for (const Move &move : moves) {
     poll_cancel(context);
-    Instance &instance = description.geometry.instances[move.instance];
-    instance.place(instance.to_world);
-    Displacement(description, context, move).run();
+    DisplacedMesh source = source_of(description, move);
+    if (const DisplacedMesh *known = find_made(before ? &before->displaced : nullptr, source)) {
+      source.made = known->made;
+      source.messages = known->messages;
+    } else {
+      Instance &instance = description.instances[move.instance];
+      instance.place(instance.to_world);
+      count_made(context, &MadeCounts::changed_meshes);
+      Displacement displacement(description, views, attributes, context, move);
+      source.made = displacement.run();
+      source.messages = displacement.messages();
+    }
+    description.meshes[source.instance.mesh].object = source.made;
+    description.made_messages.add(source.messages);
+    made.displaced.push_back(std::move(source));
   }
 }
 

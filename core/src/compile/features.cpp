@@ -25,13 +25,13 @@ bool is_matt_sheet(const PrincipledDescription &principled) {
 
 } // namespace
 
-bool lets_light_through(const Material &material) {
+bool lets_light_through(const MaterialView &material) {
   return material.is_transparent() || std::any_of(material.lobes.begin(), material.lobes.end(), is_glass);
 }
 
 namespace {
 
-std::string code_of(const Material &material, size_t number) {
+std::string code_of(const MaterialView &material, size_t number) {
   std::string code = material.flags & MaterialFlag::NoBumpCorrection ? "u" : "c";
   if (!material.fixed())
     return code + std::to_string(number);
@@ -42,7 +42,7 @@ std::string code_of(const Material &material, size_t number) {
 
 } // namespace
 
-std::vector<uint32_t> shading_classes(const std::vector<Material> &materials) {
+std::vector<uint32_t> shading_classes(std::span<const MaterialView> materials) {
   std::map<std::string, uint32_t> numbers;
   std::vector<uint32_t> classes;
   for (size_t i = 0; i < materials.size(); ++i)
@@ -110,7 +110,7 @@ uint32_t shape_feature(ShapeKind kind) {
   return 0;
 }
 
-bool uses_images(const Program &program) {
+bool uses_images(const ProgramView &program) {
   for (const Node &node : program.nodes)
     if (node.kind == NodeKind::Image || node.kind == NodeKind::Environment)
       return true;
@@ -141,7 +141,7 @@ uint32_t principled_shapes(const PrincipledDescription &principled) {
   return shapes;
 }
 
-void add_material(const Material &material, Features &features) {
+void add_material(const MaterialView &material, Features &features) {
   for (const LobeDescription &lobe : material.lobes) {
     features.shapes |= lobe.principled ? principled_shapes(*lobe.principled) : shapes_of(lobe.kind);
     if (is_glass(lobe))
@@ -172,9 +172,9 @@ void add_material(const Material &material, Features &features) {
 Features find_features(const Description &description) {
   Features features;
   // Count only meshes and materials that some instance uses.
-  std::vector<uint32_t> uses(description.geometry.meshes.size());
+  std::vector<uint32_t> uses(description.meshes.size());
   std::vector<bool> shown(description.materials.size());
-  for (const Instance &instance : description.geometry.instances) {
+  for (const Instance &instance : description.instances) {
     features.bits |= shape_feature(instance.kind);
     if (instance.hidden_from)
       features.bits |= kFeatureVisibility;
@@ -183,7 +183,7 @@ Features find_features(const Description &description) {
     if (instance.kind == ShapeKind::Mesh) {
       if (++uses[instance.mesh] > 1)
         features.bits |= kFeatureInstances;
-      if (!description.geometry.meshes[instance.mesh].colors.empty())
+      if (!description.meshes[instance.mesh]->colors.empty())
         features.bits |= kFeatureVertexColors;
     }
     for (uint32_t slot = 0; slot < instance.slot_count; ++slot)
@@ -191,10 +191,10 @@ Features find_features(const Description &description) {
   }
   for (size_t i = 0; i < shown.size(); ++i)
     if (shown[i])
-      add_material(description.materials[i], features);
-  for (const LightDescription &light : description.lights)
-    features.bits |= kFeaturePointLights << uint32_t(light.kind);
-  const World &world = description.world;
+      add_material(*description.materials[i], features);
+  for (const Given<LightDescription> &light : description.lights)
+    features.bits |= kFeaturePointLights << uint32_t(light->kind);
+  const World &world = *description.world;
   if (world.varies() || world.radiance.value != glm::vec3(0.0f))
     features.bits |= kFeatureEnvironment;
   if (world.varies())

@@ -52,12 +52,12 @@ std::string feature_names(const Features &features);
 // Whether a lobe may refract.
 bool is_glass(const LobeDescription &lobe);
 // Whether light may pass through the surface, straight or refracted.
-bool lets_light_through(const Material &material);
+bool lets_light_through(const MaterialView &material);
 
 // Classes of materials by their shading code. Vertices of one class may be lanes of the same block.
 
 // Returns the class of each material. Materials without nodes share a class if their lobes differ in numbers alone; a material
 // with nodes has its own class, because its program differs.
-std::vector<uint32_t> shading_classes(const std::vector<Material> &materials);
+std::vector<uint32_t> shading_classes(std::span<const MaterialView> materials);
 
 } // namespace lancer

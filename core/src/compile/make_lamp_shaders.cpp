@@ -17,7 +17,7 @@ Affine frame_of(const LightDescription &from, const Light &light, const Normalis
 
 } // namespace
 
-void add_lamp_shader(LightDescription &from, Light &light, const Normalisation &normalisation, LampShaders &shaders) {
+void add_lamp_shader(const LightDescription &from, Light &light, const Normalisation &normalisation, LampShaders &shaders) {
   if (!from.strength.varies())
     return;
   light.shader = uint32_t(shaders.of.size());
@@ -26,11 +26,12 @@ void add_lamp_shader(LightDescription &from, Light &light, const Normalisation &
   frame.kind = ShapeKind::Plane;
   frame.number = light.shader;
   frame.place(frame_of(from, light, normalisation));
-  shaders.frames.instances.push_back(frame);
+  shaders.places.push_back(frame);
+  shaders.frames.instances = shaders.places;
   LampShader shader;
-  shader.program = std::move(from.program);
+  shader.program = from.program;
   shader.strength = from.strength;
-  shader.schedule = shader.program.schedule(std::span(&shader.strength, 1));
+  shader.schedule = from.schedule;
   if (light.kind == LightKind::Area) {
     // Along the columns of the matrix, which need not be orthogonal.
     const double scale = normalisation.scale;
@@ -45,7 +46,7 @@ void add_lamp_shader(LightDescription &from, Light &light, const Normalisation &
     const double half = 0.5 * double(from.spot_angle);
     shader.cotangent = 0.5 * cos(half) / std::max(sin(half), 1e-300);
   }
-  shaders.of.push_back(std::move(shader));
+  shaders.of.push_back(shader);
 }
 
 } // namespace lancer

@@ -152,8 +152,39 @@ Light place_light(const LightDescription &from, const Normalisation &normalisati
   return light;
 }
 
-std::vector<Emitter> make_emitters(const Geometry &geometry, const std::vector<uint32_t> &slots,
-                                   const std::vector<Material> &materials, EmissionAt &emission, const BuildContext &context) {
+namespace {
+
+// Makes the tree of an instance's faces, or takes that of the scene before.
+std::shared_ptr<const EmissiveFaces> faces_of(const GeometryView &geometry, std::span<const uint32_t> slots,
+                                              std::span<const MaterialView> materials, uint32_t number, bool of_mesh,
+                                              EmissionAt &emission, const BuildContext &context,
+                                              const EmitterSources &sources) {
+  const auto make = [&] {
+    count_made(context, &MadeCounts::emitters);
+    return std::make_shared<EmissiveFaces>(geometry, slots, materials, number, of_mesh, emission, context);
+  };
+  if (!sources.made)
+    return make();
+  const Instance &instance = geometry.instances[number];
+  MadeEmissiveFaces wanted;
+  wanted.mesh = sources.meshes[instance.mesh];
+  for (const uint32_t slot : slots.subspan(instance.first_slot, instance.slot_count)) {
+    wanted.materials.push_back(sources.materials[slot]);
+    wanted.by_nodes = wanted.by_nodes || !materials[slot].emission_nodes.empty();
+  }
+  wanted.of_mesh = of_mesh;
+  wanted.instance = instance;
+  const MadeEmissiveFaces *const known = find_made(sources.before, wanted);
+  wanted.faces = known ? known->faces : make();
+  sources.made->push_back(wanted);
+  return wanted.faces;
+}
+
+} // namespace
+
+std::vector<Emitter> make_emitters(const GeometryView &geometry, std::span<const uint32_t> slots,
+                                   std::span<const MaterialView> materials, EmissionAt &emission, const BuildContext &context,
+                                   const EmitterSources &sources) {
   // Collect the emitting instances: exact surfaces alone, meshes grouped by mesh and materials.
   using Key = std::pair<uint32_t, std::vector<uint32_t>>;
   struct Shared {
@@ -185,7 +216,7 @@ std::vector<Emitter> make_emitters(const Geometry &geometry, const std::vector<u
       continue;
     }
     if (!user->faces)
-      user->faces = std::make_shared<EmissiveFaces>(geometry, slots, materials, instance, user->users > 1, emission, context);
+      user->faces = faces_of(geometry, slots, materials, instance, user->users > 1, emission, context, sources);
     if (!user->faces->empty())
       emitters.emplace_back(geometry, instance, user->faces);
   }

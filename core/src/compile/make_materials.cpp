@@ -102,7 +102,7 @@ size_t add_lobe(const LobeDescription &lobe, Frames &frames) {
 
 } // namespace
 
-MaterialDemand demand_of(const Material &material) {
+MaterialDemand demand_of(const MaterialView &material) {
   Frames frames;
   MaterialDemand demand;
   for (const LobeDescription &lobe : material.lobes)
@@ -112,7 +112,7 @@ MaterialDemand demand_of(const Material &material) {
   return demand;
 }
 
-void report_limits(const std::string &object, const Material &material, Messages &messages) {
+void report_limits(const std::string &object, const MaterialView &material, Messages &messages) {
   const MaterialDemand demand = demand_of(material);
   if (demand.lobes > size_t(kMaxLobes))
     messages.add(object, std::to_string(demand.lobes) + " lobes may overlap in one place; only the first " +
@@ -159,7 +159,11 @@ const Parameter *share_parameter(PrincipledLayer layer, const PrincipledDescript
   }
 }
 
-void cache_layers(const LobeDescription &lobe, ReadyLobe &ready) {
+const CachedPlan *keep(ReadyLobes &all, const MicrofacetPlan<float> &plan) {
+  return all.plans.emplace_back(cached(plan)).get();
+}
+
+void cache_layers(const LobeDescription &lobe, ReadyLobe &ready, ReadyLobes &all) {
   for (const LayerRow &row : kLayers) {
     const Parameter *share = share_parameter(row.layer, *lobe.principled);
     const bool may_be_there = share_of(row.layer, ready.principled) > kLeastLayer || (share && share->varies());
@@ -169,19 +173,20 @@ void cache_layers(const LobeDescription &lobe, ReadyLobe &ready) {
     if (row.layer == PrincipledLayer::Gloss && !has_gloss(ready.principled))
       continue;
     for (const bool inside : {false, true})
-      ready.plans[inside][static_cast<int>(row.layer)] = cached(plan_layer(row.layer, ready.inputs, ready.principled, inside));
+      ready.plans[inside][static_cast<int>(row.layer)] =
+          keep(all, plan_layer(row.layer, ready.inputs, ready.principled, inside));
   }
 }
 
 // Plans the facets of a lobe whose inputs are constant and which has no direction along the surface.
-void cache_facets(ReadyLobe &ready) {
+void cache_facets(ReadyLobe &ready, ReadyLobes &all) {
   const LobeInputs<float> &inputs = ready.inputs;
   const bool glass = inputs.kind == LobeKind::Glass, conductor = inputs.kind == LobeKind::Conductor;
   const bool glossy = inputs.kind == LobeKind::Glossy && inputs.distribution != Facets::AshikhminShirley;
   if (inputs.rules == Rules::Blender3 || (!glass && (inputs.anisotropy != 0.0f || !(conductor || glossy))))
     return;
   for (const bool inside : {false, true})
-    ready.plans[inside][static_cast<int>(PrincipledLayer::Gloss)] = cached(plan_facets(inputs, inside));
+    ready.plans[inside][static_cast<int>(PrincipledLayer::Gloss)] = keep(all, plan_facets(inputs, inside));
 }
 
 } // namespace
@@ -225,21 +230,22 @@ std::string ReadyLobe::code() const {
   return code;
 }
 
-std::shared_ptr<const ReadyLobe[]> make_ready_lobes(const Material &material) {
+ReadyLobes make_ready_lobes(const MaterialView &material) {
   // Placeholders for the results of nodes. Values derived from a placeholder are not used.
   const std::vector<glm::vec4> nothing(material.program.nodes.size(), glm::vec4(0.0f));
-  const auto all = std::make_shared<ReadyLobe[]>(material.lobes.size());
+  ReadyLobes all;
+  all.lobes.resize(material.lobes.size());
   for (size_t i = 0; i < material.lobes.size(); ++i) {
     const LobeDescription &lobe = material.lobes[i];
-    ReadyLobe &ready = all[i];
+    ReadyLobe &ready = all.lobes[i];
     ready.inputs = evaluate(lobe, nothing);
     if (lobe.principled)
       ready.principled = evaluate(*lobe.principled, nothing);
     ready.parts = LobeParts(ready.inputs, ready.principled);
     if (lobe.principled && lobe.principled->rules != Rules::Blender3)
-      cache_layers(lobe, ready);
+      cache_layers(lobe, ready, all);
     else if (!lobe.principled && material.fixed())
-      cache_facets(ready);
+      cache_facets(ready, all);
   }
   return all;
 }

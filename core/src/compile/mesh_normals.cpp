@@ -23,7 +23,7 @@ std::vector<glm::vec3> units(const std::vector<glm::dvec3> &sums) {
 }
 
 // Returns the mean of the faces' normals at each vertex, weighted by the faces' angles there.
-std::vector<glm::vec3> normals_by_angle(const Mesh &mesh) {
+std::vector<glm::vec3> normals_by_angle(const MeshView &mesh) {
   std::vector<glm::dvec3> sums(mesh.positions.size(), glm::dvec3(0.0));
   for (uint32_t i = 0; i < mesh.triangles.size(); ++i) {
     const glm::dvec3 n = face_normal(mesh, i);
@@ -61,7 +61,7 @@ void renew_at_corners(Mesh &mesh, const std::vector<bool> &triangles) {
     if (triangles[i])
       for (int corner = 0; corner < 3; ++corner)
         sums[key(i, corner)] += face_normal(mesh, i);
-  std::vector<glm::vec3> normals = mesh.normals;
+  std::vector<glm::vec3> normals(mesh.normals.begin(), mesh.normals.end());
   for (uint32_t i = 0; i < mesh.triangles.size(); ++i)
     if (triangles[i])
       for (int corner = 0; corner < 3; ++corner)
@@ -71,14 +71,14 @@ void renew_at_corners(Mesh &mesh, const std::vector<bool> &triangles) {
 
 } // namespace
 
-glm::dvec3 twice_area(const Mesh &mesh, uint32_t triangle) {
+glm::dvec3 twice_area(const MeshView &mesh, uint32_t triangle) {
   const glm::dvec3 v0(mesh.vertex(triangle, 0)), v1(mesh.vertex(triangle, 1)), v2(mesh.vertex(triangle, 2));
   return glm::cross(v1 - v0, v2 - v0);
 }
 
-glm::dvec3 face_normal(const Mesh &mesh, uint32_t triangle) { return unit_or_zero(twice_area(mesh, triangle)); }
+glm::dvec3 face_normal(const MeshView &mesh, uint32_t triangle) { return unit_or_zero(twice_area(mesh, triangle)); }
 
-std::vector<glm::vec3> normals_by_area(const Mesh &mesh) {
+std::vector<glm::vec3> normals_by_area(const MeshView &mesh) {
   std::vector<glm::dvec3> sums(mesh.positions.size(), glm::dvec3(0.0));
   for (uint32_t i = 0; i < mesh.triangles.size(); ++i) {
     const glm::dvec3 n = twice_area(mesh, i);
@@ -88,11 +88,11 @@ std::vector<glm::vec3> normals_by_area(const Mesh &mesh) {
   return units(sums);
 }
 
-std::vector<glm::vec3> vertex_normals(const Mesh &mesh) {
+std::vector<glm::vec3> vertex_normals(const MeshView &mesh) {
   if (mesh.normal_domain != NormalDomain::Vertex)
     return normals_by_angle(mesh);
   const glm::vec3 none(0.0f);
-  std::vector<glm::vec3> normals = mesh.normals;
+  std::vector<glm::vec3> normals(mesh.normals.begin(), mesh.normals.end());
   if (std::find(normals.begin(), normals.end(), none) == normals.end())
     return normals;
   // Replace a normal of 0 by the geometric normal.
@@ -141,7 +141,7 @@ glm::dvec2 nearest_place(const glm::dvec3 (&v)[3]) {
 }
 
 // Returns the mean of the vertices of some triangles, each vertex counted once.
-glm::dvec3 mean_vertex(const Mesh &mesh, std::span<const uint32_t> triangles) {
+glm::dvec3 mean_vertex(const MeshView &mesh, std::span<const uint32_t> triangles) {
   std::vector<uint32_t> vertices;
   for (const uint32_t triangle : triangles)
     for (int corner = 0; corner < 3; ++corner)
@@ -154,7 +154,7 @@ glm::dvec3 mean_vertex(const Mesh &mesh, std::span<const uint32_t> triangles) {
   return sum / double(vertices.size());
 }
 
-PolygonCenter center_of(const Mesh &mesh, std::span<const uint32_t> triangles) {
+PolygonCenter center_of(const MeshView &mesh, std::span<const uint32_t> triangles) {
   PolygonCenter center;
   const glm::dvec3 mean = mean_vertex(mesh, triangles);
   glm::dvec3 area(0.0);
@@ -185,7 +185,7 @@ PolygonCenter center_of(const Mesh &mesh, std::span<const uint32_t> triangles) {
 
 } // namespace
 
-std::vector<PolygonCenter> polygon_centers(const Mesh &mesh) {
+std::vector<PolygonCenter> polygon_centers(const MeshView &mesh) {
   if (mesh.polygons.empty())
     return {};
   std::vector<uint32_t> order(mesh.polygons.size());
@@ -201,7 +201,7 @@ std::vector<PolygonCenter> polygon_centers(const Mesh &mesh) {
   return centers;
 }
 
-Hit center_hit(const Mesh &mesh, const Hit &hit) {
+Hit center_hit(const MeshView &mesh, const Hit &hit) {
   Hit center = hit;
   center.u = center.v = 1.0 / 3.0;
   if (!mesh.centers.empty()) {

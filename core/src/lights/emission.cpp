@@ -9,9 +9,9 @@
 
 namespace lancer {
 
-bool is_light(const Material &material) { return material.emits() && !(material.flags & MaterialFlag::NotALight); }
+bool is_light(const MaterialView &material) { return material.emits() && !(material.flags & MaterialFlag::NotALight); }
 
-bool emission_varies(const Material &material) { return material.emission.varies() || material.layered_emission; }
+bool emission_varies(const MaterialView &material) { return material.emission.varies() || material.layered_emission; }
 
 double emission_level(const glm::vec3 &radiance) {
   const double level = double(mean(glm::abs(radiance)));
@@ -21,8 +21,8 @@ double emission_level(const glm::vec3 &radiance) {
 glm::vec3 EmissionAt::operator()(const Surface &surface, const glm::vec3 &wo, const LightPath<float> &path) {
   if (surface.material == kNone)
     return glm::vec3(0.0f);
-  const Material *const material = &materials_[surface.material];
-  const Schedule &nodes = material->layered_emission ? material->surface_nodes : material->emission_nodes;
+  const MaterialView *const material = &materials_[surface.material];
+  ScheduleView nodes = material->layered_emission ? material->surface_nodes : material->emission_nodes;
   nodes_.run(material->program, nodes, surface, {.wo = wo, .path = path});
   const glm::vec3 own = nodes_.value(material->emission);
   if (!material->layered_emission)
@@ -52,7 +52,7 @@ struct Corners {
   double area() const { return 0.5 * glm::length(glm::cross(p[1] - p[0], p[2] - p[0])); }
 };
 
-Corners corners_of(const Mesh &mesh, const Affine *to_world, uint32_t face) {
+Corners corners_of(const MeshView &mesh, const Affine *to_world, uint32_t face) {
   Corners corners;
   for (int i = 0; i < 3; ++i) {
     const glm::dvec3 p(mesh.vertex(face, i));
@@ -61,7 +61,7 @@ Corners corners_of(const Mesh &mesh, const Affine *to_world, uint32_t face) {
   return corners;
 }
 
-Surface point_of(const Geometry &geometry, const std::vector<uint32_t> &slots, uint32_t instance, uint32_t face,
+Surface point_of(const GeometryView &geometry, std::span<const uint32_t> slots, uint32_t instance, uint32_t face,
                  const double (&weights)[2]) {
   Hit hit;
   hit.instance = instance;
@@ -73,11 +73,11 @@ Surface point_of(const Geometry &geometry, const std::vector<uint32_t> &slots, u
 
 } // namespace
 
-std::vector<double> EmissiveFaces::powers(const Geometry &geometry, const std::vector<uint32_t> &slots,
-                                          const std::vector<Material> &materials, uint32_t instance, EmissionAt &emission,
+std::vector<double> EmissiveFaces::powers(const GeometryView &geometry, std::span<const uint32_t> slots,
+                                          std::span<const MaterialView> materials, uint32_t instance, EmissionAt &emission,
                                           const BuildContext &context) const {
   const Instance &placed = geometry.instances[instance];
-  const Mesh &mesh = geometry.meshes[placed.mesh];
+  const MeshView &mesh = geometry.meshes[placed.mesh];
   const uint32_t faces = uint32_t(mesh.triangles.size());
   std::vector<double> powers(faces);
   std::vector<bool> textured(faces);
@@ -87,7 +87,7 @@ std::vector<double> EmissiveFaces::powers(const Geometry &geometry, const std::v
     const uint32_t number = material_of(geometry, slots, instance, face);
     if (number == kNone || !is_light(materials[number]))
       continue;
-    const Material &material = materials[number];
+    const MaterialView &material = materials[number];
     const double area = corners_of(mesh, of_mesh_ ? nullptr : &placed.to_world, face).area();
     double level = emission_level(material.emission.value);
     if (emission_varies(material)) {
@@ -111,12 +111,12 @@ std::vector<double> EmissiveFaces::powers(const Geometry &geometry, const std::v
   return powers;
 }
 
-EmissiveFaces::EmissiveFaces(const Geometry &geometry, const std::vector<uint32_t> &slots,
-                             const std::vector<Material> &materials, uint32_t instance, bool of_mesh, EmissionAt &emission,
+EmissiveFaces::EmissiveFaces(const GeometryView &geometry, std::span<const uint32_t> slots,
+                             std::span<const MaterialView> materials, uint32_t instance, bool of_mesh, EmissionAt &emission,
                              const BuildContext &context)
     : of_mesh_(of_mesh) {
   const Instance &placed = geometry.instances[instance];
-  const Mesh &mesh = geometry.meshes[placed.mesh];
+  const MeshView &mesh = geometry.meshes[placed.mesh];
   const std::vector<double> power = powers(geometry, slots, materials, instance, emission, context);
   by_power_ = WeightedChoice(power);
   // Scale the emitting faces to coordinates of at most about 1024 around 0, where float is precise enough.

@@ -13,8 +13,8 @@
 namespace lancer {
 
 // Return whether light sampling chooses faces with this material, and whether their emission differs from place to place.
-bool is_light(const Material &material);
-bool emission_varies(const Material &material);
+bool is_light(const MaterialView &material);
+bool emission_varies(const MaterialView &material);
 // Returns the weight of emitted light in a choice: the mean of the channels; 0 where no channel is positive or the mean is not
 // finite.
 double emission_level(const glm::vec3 &radiance);
@@ -23,7 +23,7 @@ double emission_level(const glm::vec3 &radiance);
 class EmissionAt {
 public:
   // materials and all that scene points to must outlive this object.
-  EmissionAt(const NodeScene &scene, std::span<const Material> materials)
+  EmissionAt(const NodeScene &scene, std::span<const MaterialView> materials)
       : materials_(materials), nodes_(scene, most_values(materials)) {}
 
   // Returns the radiance that a surface emits towards the unit world direction wo. path: of the vertex that samples the light.
@@ -32,7 +32,7 @@ public:
   double level(const Surface &surface);
 
 private:
-  std::span<const Material> materials_;
+  std::span<const MaterialView> materials_;
   MaterialNodes nodes_;
   Bsdf<float> bsdf_; // scratch for emission below layers
 };
@@ -42,7 +42,7 @@ class EmissiveFaces {
 public:
   // of_mesh: the tree is made in the object's space and serves all instances, with the emission that this instance has;
   // otherwise it is made in world space. Throws BuildCancelled.
-  EmissiveFaces(const Geometry &geometry, const std::vector<uint32_t> &slots, const std::vector<Material> &materials,
+  EmissiveFaces(const GeometryView &geometry, std::span<const uint32_t> slots, std::span<const MaterialView> materials,
                 uint32_t instance, bool of_mesh, EmissionAt &emission, const BuildContext &context);
 
   bool empty() const { return tree_.empty(); }
@@ -63,8 +63,8 @@ public:
 
 private:
   // Returns radiance times area of each face, in the space of the tree.
-  std::vector<double> powers(const Geometry &geometry, const std::vector<uint32_t> &slots,
-                             const std::vector<Material> &materials, uint32_t instance, EmissionAt &emission,
+  std::vector<double> powers(const GeometryView &geometry, std::span<const uint32_t> slots,
+                             std::span<const MaterialView> materials, uint32_t instance, EmissionAt &emission,
                              const BuildContext &context) const;
   LightQuery to_tree(const Instance &placed, const LightQuery &query) const;
 
@@ -80,9 +80,9 @@ private:
 class Emitter {
 public:
   // Makes the emitter of a mesh; faces must not be empty.
-  Emitter(const Geometry &geometry, uint32_t instance, std::shared_ptr<const EmissiveFaces> faces);
+  Emitter(const GeometryView &geometry, uint32_t instance, std::shared_ptr<const EmissiveFaces> faces);
   // Makes the emitter of an exact surface; empty() holds where the surface emits nothing.
-  Emitter(const Geometry &geometry, const std::vector<uint32_t> &slots, const std::vector<Material> &materials,
+  Emitter(const GeometryView &geometry, std::span<const uint32_t> slots, std::span<const MaterialView> materials,
           uint32_t instance, EmissionAt &emission);
 
   bool empty() const { return !(bounds_.energy > 0.0); }
@@ -92,17 +92,17 @@ public:
   const std::shared_ptr<const EmissiveFaces> &faces() const { return faces_; }
 
   // Returns the probability with which a light sample at the point of the query chooses a face.
-  double face_probability(const Geometry &geometry, const LightQuery &query, uint32_t face) const {
+  double face_probability(const GeometryView &geometry, const LightQuery &query, uint32_t face) const {
     return faces_ ? faces_->probability(geometry.instances[instance_], query, face) : double(!empty());
   }
   // Samples a point of an exact surface, seen from p, and writes it to surface. radiance stays 0: the caller evaluates the
   // material at that point.
-  LightSample sample_shape(const Geometry &geometry, const std::vector<uint32_t> &slots, const glm::dvec3 &p,
+  LightSample sample_shape(const GeometryView &geometry, std::span<const uint32_t> slots, const glm::dvec3 &p,
                            const glm::vec2 &u, Surface &surface) const;
   // Returns the density per solid angle with which a light sample gives this surface point from p, once its face is chosen.
-  double face_pdf(const Geometry &geometry, const glm::dvec3 &p, const Surface &surface) const;
+  double face_pdf(const GeometryView &geometry, const glm::dvec3 &p, const Surface &surface) const;
   // The same for a face that is chosen by power alone.
-  double pdf(const Geometry &geometry, const glm::dvec3 &p, const Surface &surface) const;
+  double pdf(const GeometryView &geometry, const glm::dvec3 &p, const Surface &surface) const;
 
 private:
   uint32_t instance_ = kNone, hidden_from_ = 0;

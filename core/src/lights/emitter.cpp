@@ -12,8 +12,8 @@ namespace lancer {
 
 namespace {
 
-SeenFace<float> see_face(const Geometry &geometry, const Instance &instance, uint32_t face, const glm::dvec3 &p) {
-  const Mesh &mesh = geometry.meshes[instance.mesh];
+SeenFace<float> see_face(const GeometryView &geometry, const Instance &instance, uint32_t face, const glm::dvec3 &p) {
+  const MeshView &mesh = geometry.meshes[instance.mesh];
   const Vector3<float> corner[3] = {mesh.vertex(face, 0), mesh.vertex(face, 1), mesh.vertex(face, 2)};
   return {MapLanes<float>(instance.to_world), corner, Vector3<double>(p)};
 }
@@ -59,7 +59,7 @@ double area_scale(const Instance &instance, const glm::dvec3 &n) {
 }
 
 // Returns a point of an exact surface, hit at t = 1 by a ray along the normal, as the surface stage expects.
-Surface part_point(const Geometry &geometry, const std::vector<uint32_t> &slots, uint32_t instance, int part,
+Surface part_point(const GeometryView &geometry, std::span<const uint32_t> slots, uint32_t instance, int part,
                    const glm::vec2 &u) {
   const Instance &placed = geometry.instances[instance];
   const UnitPoint point = unit_point(placed.kind, part, u);
@@ -75,11 +75,11 @@ Surface part_point(const Geometry &geometry, const std::vector<uint32_t> &slots,
 
 } // namespace
 
-Emitter::Emitter(const Geometry &geometry, uint32_t instance, std::shared_ptr<const EmissiveFaces> faces)
+Emitter::Emitter(const GeometryView &geometry, uint32_t instance, std::shared_ptr<const EmissiveFaces> faces)
     : instance_(instance), hidden_from_(geometry.instances[instance].hidden_from),
       bounds_(faces->bounds(geometry.instances[instance])), faces_(std::move(faces)) {}
 
-Emitter::Emitter(const Geometry &geometry, const std::vector<uint32_t> &slots, const std::vector<Material> &materials,
+Emitter::Emitter(const GeometryView &geometry, std::span<const uint32_t> slots, std::span<const MaterialView> materials,
                  uint32_t instance, EmissionAt &emission)
     : instance_(instance), hidden_from_(geometry.instances[instance].hidden_from) {
   const Instance &placed = geometry.instances[instance_];
@@ -107,12 +107,12 @@ Emitter::Emitter(const Geometry &geometry, const std::vector<uint32_t> &slots, c
   bounds_.energy = level * part_area(placed.kind, 0) * mean_area_scale(placed.to_world.linear);
 }
 
-double Emitter::pdf(const Geometry &geometry, const glm::dvec3 &p, const Surface &surface) const {
+double Emitter::pdf(const GeometryView &geometry, const glm::dvec3 &p, const Surface &surface) const {
   const double pdf = face_pdf(geometry, p, surface);
   return faces_ ? double(faces_->by_power().pmf(surface.primitive)) * pdf : pdf;
 }
 
-LightSample Emitter::sample_shape(const Geometry &geometry, const std::vector<uint32_t> &slots, const glm::dvec3 &p,
+LightSample Emitter::sample_shape(const GeometryView &geometry, std::span<const uint32_t> slots, const glm::dvec3 &p,
                                   const glm::vec2 &u, Surface &surface) const {
   const auto part = parts_.sample(u.x);
   surface = part_point(geometry, slots, instance_, int(part.index), {part.u, u.y});
@@ -129,7 +129,7 @@ LightSample Emitter::sample_shape(const Geometry &geometry, const std::vector<ui
   return sample;
 }
 
-double Emitter::face_pdf(const Geometry &geometry, const glm::dvec3 &p, const Surface &surface) const {
+double Emitter::face_pdf(const GeometryView &geometry, const glm::dvec3 &p, const Surface &surface) const {
   const Instance &placed = geometry.instances[instance_];
   const glm::dvec3 v = surface.p - p;
   if (empty())

@@ -34,7 +34,7 @@ float weight_of(const glm::vec3 &radiance) {
 }
 
 // Returns the width of the largest image that the radiance reads; a cube map counts as four of its sides.
-uint32_t image_width(const World &world, const std::vector<Image> &images) {
+uint32_t image_width(const WorldView &world) {
   uint32_t width = 0;
   for (const uint16_t number : world.schedule) {
     const Node &node = world.program.nodes[number];
@@ -45,7 +45,7 @@ uint32_t image_width(const World &world, const std::vector<Image> &images) {
       continue;
     const bool cube = node.kind == NodeKind::Environment && node.option == EnvironmentProjection::Cube;
     for (uint32_t i = 0; i < node.image_count; ++i) {
-      const Image &image = images[node.image + i];
+      const ImageView &image = world.program.images[node.image + i];
       width = std::max(width, cube ? 4 * image.width : std::max(image.width, 2 * image.height));
     }
   }
@@ -54,7 +54,7 @@ uint32_t image_width(const World &world, const std::vector<Image> &images) {
 
 // Whether the radiance depends on the direction. Of the nodes without inputs, all depend on the direction except Light Path and
 // Object Info.
-bool has_directions(const World &world) {
+bool has_directions(const WorldView &world) {
   return std::ranges::any_of(world.schedule, [&](uint16_t number) {
     switch (world.program.nodes[number].kind) {
     case NodeKind::Coordinate:
@@ -85,13 +85,12 @@ MapSize map_size(uint32_t resolution, uint32_t widest) {
   return size;
 }
 
-Environment::Environment(const World &world, const std::vector<Image> &images, const Normalisation &normalisation,
-                         const BuildContext &context, bool glass)
-    : world_(&world), images_(&images), normalisation_(&normalisation), constant_(world.radiance.value),
+Environment::Environment(const WorldView &world, const Normalisation &normalisation, const BuildContext &context, bool glass)
+    : world_(world), normalisation_(&normalisation), constant_(world.radiance.value),
       mean_(double(weight_of(world.radiance.value))), hidden_from_(world.hidden_from) {
   if (!world.varies())
     return;
-  const uint32_t across = world.map_resolution > 0 ? world.map_resolution : std::max(image_width(world, images), 4096u);
+  const uint32_t across = world.map_resolution > 0 ? world.map_resolution : std::max(image_width(world), 4096u);
   finest_ = 2.0f * glm::pi<float>() / float(across);
   if (has_directions(world)) {
     make_maps(context, glass);
@@ -101,33 +100,34 @@ Environment::Environment(const World &world, const std::vector<Image> &images, c
   mean_ = double(weight_of(evaluate(glm::dvec3(0.0, 0.0, 1.0), values, nullptr, nullptr)));
 }
 
-glm::vec3 Environment::evaluate(const Program &program, const glm::dvec3 &wi, std::span<glm::vec4> values, const Camera *camera,
+glm::vec3 Environment::evaluate(const ProgramView &program, const glm::dvec3 &wi, std::span<glm::vec4> values, const Camera *camera,
                                 const glm::dvec3 *eye, const LightPath<float> &path) const {
   NodeContext context;
-  context.images = images_;
   context.normalisation = normalisation_;
   context.camera = camera;
   context.wo = glm::vec3(-wi);
   context.eye = eye;
   context.path = path;
-  run(program, world_->schedule, context, values);
-  return value_of(world_->radiance, values);
+  run(program, world_.schedule, context, values);
+  return value_of(world_.radiance, values);
 }
 
 void Environment::make_maps(const BuildContext &context, bool glass) {
-  const MapSize size = map_size(world_->map_resolution, image_width(*world_, *images_));
+  count_made(context, &MadeCounts::skies);
+  const MapSize size = map_size(world_.map_resolution, image_width(world_));
   const uint32_t width = size.width, height = size.height, looks = size.looks;
   NodeScene scene;
-  scene.images = images_;
   scene.normalisation = normalisation_;
-  const std::vector<Sun> suns = find_suns(*world_, scene);
-  const Program plain = suns.empty() ? Program() : without_suns(*world_, suns);
-  const Program &program = suns.empty() ? world_->program : plain;
+  const std::vector<Sun> suns = find_suns(world_, scene);
+  const std::vector<Node> nodes = without_suns(world_, suns);
+  ProgramView plain = world_.program;
+  plain.nodes = nodes;
+  const ProgramView &program = plain;
   const DirectionMap grid(width, height, std::vector<float>(size_t(width) * height, 1.0f));
   std::vector<float> weights(size_t(width) * height);
   std::vector<double> totals(height);
   parallel_for(context, height, [&](size_t row) {
-    std::vector<glm::vec4> values(world_->program.value_count());
+    std::vector<glm::vec4> values(world_.program.value_count());
     for (uint32_t column = 0; column < width; ++column) {
       float sum = 0.0f;
       for (uint32_t look = 0; look < looks * looks; ++look) {
@@ -166,21 +166,19 @@ void Environment::make_maps(const BuildContext &context, bool glass) {
         map.add_disc(suns[i].axis, suns[i].half_angle, of_suns * (fluxes[i] / light));
     return map;
   };
-  above_mean_ = map_of(float(sky));
-  if (glass)
-    in_proportion_ = map_of(0.0f);
+  maps_ = std::make_shared<const Maps>(map_of(float(sky)), glass ? map_of(0.0f) : DirectionMap());
 }
 
-double Environment::flux_of(const Sun &sun, const Program &plain) const {
+double Environment::flux_of(const Sun &sun, const ProgramView &plain) const {
   DirectionMap disc(4, 2, std::vector<float>(8, 1.0f));
   disc.add_disc(sun.axis, sun.half_angle, 0.5);
-  std::vector<glm::vec4> values(world_->program.value_count());
+  std::vector<glm::vec4> values(world_.program.value_count());
   double sum = 0.0;
   for (int i = 0; i < kSunLooks * kSunLooks; ++i) {
     // The first half of the numbers is the disc's.
     const glm::vec2 u((float(i % kSunLooks) + 0.5f) / (2 * kSunLooks), (float(i / kSunLooks) + 0.5f) / kSunLooks);
     const glm::dvec3 wi = disc.sample(u).direction;
-    sum += double(weight_of(evaluate(world_->program, wi, values, nullptr, nullptr))) -
+    sum += double(weight_of(evaluate(world_.program, wi, values, nullptr, nullptr))) -
            double(weight_of(evaluate(plain, wi, values, nullptr, nullptr)));
   }
   const double s = sin(0.5 * sun.half_angle);

@@ -24,7 +24,7 @@ class Environment {
 public:
   // Makes a black environment.
   Environment() = default;
-  // The world, images and normalisation must outlive the environment. Where the radiance differs between directions, the
+  // The memory of the world and the normalisation must outlive the environment. Where the radiance differs between directions, the
   // constructor evaluates it in all of them and makes the sampling maps. No camera is known at that time: where nodes read the
   // camera, the map is a guess, and the uniform share of the samples covers the rest. Surfaces sample in proportion to the
   // radiance above the mean, because BSDF samples find the rest equally well (Karlik et al., "MIS Compensation: Optimizing
@@ -32,15 +32,19 @@ public:
   // the variance. Glass samples from a second map, proportional to the radiance as in Cycles. It needs that density because the
   // light that a rough boundary transmits between two directions that no facet connects depends on the density of light samples
   // (Bsdf::eval_lit). The discs of suns are sampled apart, uniformly: the maps do not contain them, and no disc is too small.
-  Environment(const World &world, const std::vector<Image> &images, const Normalisation &normalisation,
-              const BuildContext &context, bool glass);
+  Environment(const WorldView &world, const Normalisation &normalisation, const BuildContext &context, bool glass);
+
+  // Makes the environment of the same world, with the same demand for glass, in another scene.
+  Environment(const Environment &other, const Normalisation &normalisation) : Environment(other) {
+    normalisation_ = &normalisation;
+  }
 
   // Whether the radiance depends on the direction or the path. A constant environment is no light to sample: BSDF samples find
   // it best.
-  bool varies() const { return world_ && world_->varies(); }
+  bool varies() const { return world_.varies(); }
   // Whether the environment is sampled: its radiance differs between directions. BSDF samples find radiance that depends on the
   // path alone, as in Cycles.
-  bool is_light() const { return !above_mean_.empty(); }
+  bool is_light() const { return !maps_->above_mean.empty(); }
   const glm::vec3 &constant() const { return constant_; }
   uint32_t hidden_from() const { return hidden_from_; }
   // Largest angle over which images with mipmaps are averaged for other rays than the camera's: as in Cycles, a cell of the map
@@ -65,32 +69,35 @@ public:
   // take these directions, so that the weight stays in the picture. The map of Cycles is taken to be as fine as the radiance.
   double pdf_in_proportion(const glm::vec3 &radiance) const;
 
-  // The map for kernels. The environment must be a light; the table is valid until the environment is changed or moved.
+  // The map for kernels. The environment must be a light; the table is valid as long as one with the same maps is.
   DirectionTable table(bool transmits) const { return map(transmits).table(); }
-  bool has_map_of_glass() const { return !in_proportion_.empty(); }
+  bool has_map_of_glass() const { return !maps_->in_proportion.empty(); }
 
-  size_t bytes() const { return above_mean_.bytes() + in_proportion_.bytes(); }
+  size_t bytes() const { return maps_->above_mean.bytes() + maps_->in_proportion.bytes(); }
 
 private:
   glm::vec3 evaluate(const glm::dvec3 &wi, std::span<glm::vec4> values, const Camera *camera, const glm::dvec3 *eye,
                      const LightPath<float> &path = {}) const {
-    return evaluate(world_->program, wi, values, camera, eye, path);
+    return evaluate(world_.program, wi, values, camera, eye, path);
   }
-  glm::vec3 evaluate(const Program &program, const glm::dvec3 &wi, std::span<glm::vec4> values, const Camera *camera,
+  glm::vec3 evaluate(const ProgramView &program, const glm::dvec3 &wi, std::span<glm::vec4> values, const Camera *camera,
                      const glm::dvec3 *eye, const LightPath<float> &path = {}) const;
   void make_maps(const BuildContext &context, bool glass);
   // Returns the integral of a sun's weight over its disc. plain: the nodes without the suns.
-  double flux_of(const Sun &sun, const Program &plain) const;
-  const DirectionMap &map(bool transmits) const { return transmits && has_map_of_glass() ? in_proportion_ : above_mean_; }
+  double flux_of(const Sun &sun, const ProgramView &plain) const;
+  const DirectionMap &map(bool transmits) const { return transmits && has_map_of_glass() ? maps_->in_proportion : maps_->above_mean; }
 
-  const World *world_ = nullptr;
-  const std::vector<Image> *images_ = nullptr;
+  WorldView world_;
   const Normalisation *normalisation_ = nullptr;
   glm::vec3 constant_{0.0f};
   double mean_ = 0.0;
   float finest_ = 0.0f;
   uint32_t hidden_from_ = 0;
-  DirectionMap above_mean_, in_proportion_;
+  // Shared by scenes with the same world.
+  struct Maps {
+    DirectionMap above_mean, in_proportion;
+  };
+  std::shared_ptr<const Maps> maps_ = std::make_shared<const Maps>();
 };
 
 } // namespace lancer

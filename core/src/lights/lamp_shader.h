@@ -11,9 +11,9 @@
 namespace lancer {
 
 struct LampShader {
-  Program program;
+  ProgramView program;
   Parameter strength;        // factor of the lamp's emission
-  Schedule schedule;         // of strength
+  ScheduleView schedule;     // of strength
   glm::dvec3 across, up;     // AREA: a side is at 1/2 along these; SUN: of its disk, as rows of the map to the lamp's frame
   double cotangent = 0.0;    // SPOT: half the cotangent of half its angle
   double inverse_sine = 0.0; // SUN: half over the sine of a quarter of its angle; 0 for a single direction
@@ -22,7 +22,8 @@ struct LampShader {
 // The shaders by Light::shader, and the frames in which their nodes read places: one instance for each shader.
 struct LampShaders {
   std::vector<LampShader> of;
-  Geometry frames;
+  std::vector<Instance> places;
+  GeometryView frames; // its instances are places
 
   bool empty() const { return of.empty(); }
 };

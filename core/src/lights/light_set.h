@@ -41,7 +41,7 @@ public:
   const LightTree &wide_tree() const { return wide_tree_; }
   // Return the probability with which the choice returns this light, or this face of an emitter.
   double probability(const LightQuery &query, uint32_t light) const;
-  double probability(const Geometry &geometry, const LightQuery &query, const Emitter &emitter, uint32_t face) const;
+  double probability(const GeometryView &geometry, const LightQuery &query, const Emitter &emitter, uint32_t face) const;
 
   // Returns the emitter of an instance; null if the instance has none.
   const Emitter *emitter_of(uint32_t instance) const {

@@ -12,7 +12,7 @@ constexpr glm::dvec3 kChecks[] = {{0.48, 0.6, 0.64}, {-0.64, 0.48, -0.6}, {0.36,
 constexpr double kRotationError = 4e-6;
 
 // Returns the vector that a node reads in a direction.
-glm::dvec3 vector_at(const World &world, const NodeScene &scene, const Node &node, const glm::dvec3 &direction,
+glm::dvec3 vector_at(const WorldView &world, const NodeScene &scene, const Node &node, const glm::dvec3 &direction,
                      std::vector<glm::vec4> &values) {
   NodeContext context;
   static_cast<NodeScene &>(context) = scene;
@@ -23,7 +23,7 @@ glm::dvec3 vector_at(const World &world, const NodeScene &scene, const Node &nod
 
 } // namespace
 
-std::vector<Sun> find_suns(const World &world, const NodeScene &scene) {
+std::vector<Sun> find_suns(const WorldView &world, const NodeScene &scene) {
   std::vector<Sun> suns;
   std::vector<glm::vec4> values(world.program.value_count());
   for (const uint16_t number : world.schedule) {
@@ -48,11 +48,11 @@ std::vector<Sun> find_suns(const World &world, const NodeScene &scene) {
   return suns;
 }
 
-Program without_suns(const World &world, const std::vector<Sun> &suns) {
-  Program program = world.program;
+std::vector<Node> without_suns(const WorldView &world, const std::vector<Sun> &suns) {
+  std::vector<Node> nodes(world.program.nodes.begin(), world.program.nodes.end());
   for (const Sun &sun : suns)
-    program.nodes[sun.node].matrix[9] = 0.0f;
-  return program;
+    nodes[sun.node].matrix[9] = 0.0f;
+  return nodes;
 }
 
 } // namespace lancer

@@ -15,9 +15,9 @@ struct Sun {
 };
 
 // Returns the suns that are discs: of nodes SKY whose direction is that of the ray, rotated or mirrored by any nodes.
-std::vector<Sun> find_suns(const World &world, const NodeScene &scene);
+std::vector<Sun> find_suns(const WorldView &world, const NodeScene &scene);
 
 // Returns the nodes of the world without these suns' discs.
-Program without_suns(const World &world, const std::vector<Sun> &suns);
+std::vector<Node> without_suns(const WorldView &world, const std::vector<Sun> &suns);
 
 } // namespace lancer

@@ -6,20 +6,17 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <vector>
 
 namespace lancer {
 
 struct Camera;
-struct Geometry;
-struct Image;
+struct GeometryView;
 struct Normalisation;
-class NodeRays;
+struct NodeRays;
 
 // Scene data that any node may read.
 struct NodeScene {
-  const Geometry *geometry = nullptr; // null: no instances
-  const std::vector<Image> *images = nullptr;
+  const GeometryView *geometry = nullptr; // null: no instances
   const Normalisation *normalisation = nullptr; // null: the user's world is the normalised one
   const Camera *camera = nullptr;               // null: CAMERA and WINDOW use the world's frame
 };
@@ -27,7 +24,7 @@ struct NodeScene {
 // From where nodes of a block that look around send rays (looking.h). Bits of lanes: used, and sharp: rays that have arrived by
 // no wide lobe, on which Cycles bevels.
 struct alignas(64) LookingLanes {
-  NodeRays *rays = nullptr;
+  const NodeRays *rays = nullptr;
   uint32_t used = 0, sharp = 0;
   alignas(64) double offset[kBlockLanes];                                   // Surface::offset
   uint32_t pixel[kBlockLanes], sample[kBlockLanes], dimension[kBlockLanes]; // of random numbers

@@ -17,7 +17,7 @@ namespace {
 
 // Computes the scheduled nodes at a site; defined in dispatch.h.
 template <class F>
-void run_nodes(const Program &program, const Schedule &schedule, const Site<F> &site, const Values<F> &values);
+void run_nodes(const ProgramView &program, ScheduleView schedule, const Site<F> &site, const Values<F> &values);
 
 // Two directions along the surface, and the surface's displacement along them by one pixel's footprint, in the user's units.
 template <class F> struct Steps {
@@ -103,13 +103,13 @@ template <class F> Vector3<F> flat_normal_before(const Inputs<F> &in, const Site
 // destructor would need exception tables, which are shared symbols and must not occur in kernels.
 template <class F> class Kept {
 public:
-  void save(const Schedule &schedule, const Values<F> &values) {
+  void save(ScheduleView schedule, const Values<F> &values) {
     if (schedule.size() > kFew)
       kept_ = static_cast<Value<F> *>(allocate_values(schedule.size() * sizeof(Value<F>)));
     for (size_t i = 0; i < schedule.size(); ++i)
       kept_[i] = {values.get(schedule[i]), values.get(schedule[i], 3)};
   }
-  void bring_back(const Schedule &schedule, const Values<F> &values) {
+  void bring_back(ScheduleView schedule, const Values<F> &values) {
     for (size_t i = 0; i < schedule.size(); ++i)
       values.set(schedule[i], kept_[i]);
     if (kept_ != few_)
@@ -123,7 +123,7 @@ private:
 };
 
 // Runs the height's nodes at three points and restores the values.
-template <class F> Value<F> bump_node(const Program &program, const Inputs<F> &in, const Site<F> &site) {
+template <class F> Value<F> bump_node(const ProgramView &program, const Inputs<F> &in, const Site<F> &site) {
   using D = DoubleOf<F>;
   using D3 = Vector3<D>;
   const F zero(0.0f), one(1.0f);
@@ -139,7 +139,7 @@ template <class F> Value<F> bump_node(const Program &program, const Inputs<F> &i
   const Steps<F> steps = steps_at(in.node, site);
 
   // Compute the height here and at both offsets, and restore the values.
-  const Schedule &schedule = program.heights[in.node.heights];
+  const ScheduleView schedule = program.heights_of(in.node);
   Kept<F> kept;
   kept.save(schedule, in.values);
   const auto height = [&](const D3 &offset) {

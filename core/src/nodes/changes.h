@@ -21,7 +21,7 @@ template <class F> LANCER_LANE Change<F> change_of(const Vector3<Dual<F>> &v) {
 // The inputs of a node with their changes.
 template <class F> struct ChangingInputs {
   using Number = Dual<F>;
-  const Program &program;
+  const ProgramView &program;
   const Inputs<F> &in;
   const Node &node;
 
@@ -103,7 +103,7 @@ template <class F> Change<F> place_change(const Node &node, const Site<F> &site)
 }
 
 // Returns the change of a value that this file's first comment lists.
-template <class F> Change<F> node_change(const Program &program, const Inputs<F> &in, const Site<F> &site) {
+template <class F> Change<F> node_change(const ProgramView &program, const Inputs<F> &in, const Site<F> &site) {
   const Node &node = in.node;
   const ChangingInputs<F> changing{program, in, node};
   switch (node.kind) {

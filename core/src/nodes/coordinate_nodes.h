@@ -13,10 +13,10 @@ namespace {
 template <class F> LANCER_LANE Vector3<DoubleOf<F>> in_bounds(const Site<F> &site, const Vector3<DoubleOf<F>> &p) {
   using D = DoubleOf<F>;
   const auto along = [&](int axis, const D &x) __attribute__((always_inline)) {
-    const auto bound = [&](glm::vec3 Mesh::*which) __attribute__((always_inline)) {
+    const auto bound = [&](glm::vec3 MeshView::*which) __attribute__((always_inline)) {
       return by_lane<D>([&](int i) { return site.mesh[i] ? static_cast<double>((&(site.mesh[i]->*which).x)[axis]) : 0.0; });
     };
-    const D low = bound(&Mesh::low), high = bound(&Mesh::high);
+    const D low = bound(&MeshView::low), high = bound(&MeshView::high);
     // A flat mesh has coordinate 0.5 along an axis without extent.
     const D middle = D(0.5) * (low + high), size = high - low;
     return (x - middle) / select(size > D(0.0), size, D(1.0)) + D(0.5);
@@ -214,7 +214,7 @@ template <class F> Value<F> attribute_node(const Node &node, const Site<F> &site
   load_corners(
       site,
       [&](int i, glm::vec3(&at)[3]) {
-        const std::vector<glm::vec3> &colors = site.mesh[i]->colors;
+        const std::span<const glm::vec3> colors = site.mesh[i]->colors;
         for (size_t corner = 0; corner < 3 && !colors.empty(); ++corner)
           at[corner] = colors[size_t(site.primitive[i]) * 3 + corner];
       },

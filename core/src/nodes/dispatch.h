@@ -17,10 +17,10 @@ namespace lancer {
 
 namespace {
 
-inline uint32_t number_of(const Program &program, const Node &node) { return uint32_t(&node - program.nodes.data()); }
+inline uint32_t number_of(const ProgramView &program, const Node &node) { return uint32_t(&node - program.nodes.data()); }
 
 // Returns the value of one node at a site.
-template <class F> Value<F> node_value(const Program &program, const Inputs<F> &in, const Site<F> &site) {
+template <class F> Value<F> node_value(const ProgramView &program, const Inputs<F> &in, const Site<F> &site) {
   const Node &node = in.node;
   switch (node.kind) {
   case NodeKind::Coordinate:
@@ -94,11 +94,11 @@ template <class F> Value<F> node_value(const Program &program, const Inputs<F> &
   case NodeKind::VectorTransform:
     return vector_transform_node(in, site);
   case NodeKind::Ies:
-    return ies_node(in, site);
+    return ies_node(in);
   case NodeKind::Curves:
-    return curves_node(in, site);
+    return curves_node(in);
   case NodeKind::Sky:
-    return sky_node(in, site);
+    return sky_node(in);
   case NodeKind::Occlusion:
     return occlusion_node(in, site.standing(), number_of(program, node));
   case NodeKind::Bevel:
@@ -106,7 +106,7 @@ template <class F> Value<F> node_value(const Program &program, const Inputs<F> &
   case NodeKind::Raycast:
     return raycast_node(in, site);
   case NodeKind::Voxels:
-    return voxels_node(in, site);
+    return voxels_node(in);
   case NodeKind::ObjectInfo:
     return object_info_node(node, site);
   case NodeKind::LightPath:
@@ -117,10 +117,10 @@ template <class F> Value<F> node_value(const Program &program, const Inputs<F> &
 }
 
 template <class F>
-void run_nodes(const Program &program, const Schedule &schedule, const Site<F> &site, const Values<F> &values) {
+void run_nodes(const ProgramView &program, ScheduleView schedule, const Site<F> &site, const Values<F> &values) {
   for (const uint16_t number : schedule) {
     const Node &node = program.nodes[number];
-    const Inputs<F> in{node, values};
+    const Inputs<F> in{node, values, program.images.data()};
     values.set(number, node_value(program, in, site));
     if (node.changes < 0)
       continue;
@@ -179,7 +179,7 @@ template <class F> Site<F> site_of(const NodeBlock &block, int first) {
   return site;
 }
 
-template <class F> void run_block(const Program &program, const Schedule &schedule, const NodeBlock &block, NodeLanes *values) {
+template <class F> void run_block(const ProgramView &program, ScheduleView schedule, const NodeBlock &block, NodeLanes *values) {
   constexpr int width = Site<F>::kWidth;
   for (int first = 0; first < kBlockLanes; first += width)
     if (block.used >> first & ((1u << width) - 1u))

@@ -44,16 +44,16 @@ uint32_t flags_of(Extension extension, Interpolation interpolation, bool straigh
 
 } // namespace
 
-glm::vec4 lookup(const Image &image, glm::vec2 uv, Extension extension, Interpolation interpolation, bool straight) {
-  const Texel<float> found = look_up(image_view(image, flags_of(extension, interpolation, straight)), uv.x, uv.y);
+glm::vec4 lookup(const ImageView &image, glm::vec2 uv, Extension extension, Interpolation interpolation, bool straight) {
+  const Texel<float> found = look_up(image_level(image, flags_of(extension, interpolation, straight)), uv.x, uv.y);
   return {found.color.x, found.color.y, found.color.z, found.alpha};
 }
 
-float lookup_alpha(const Image &image, const glm::vec2 &uv, Extension extension, Interpolation interpolation) {
-  return look_up_alpha(image_view(image, flags_of(extension, interpolation)), uv.x, uv.y);
+float lookup_alpha(const ImageView &image, const glm::vec2 &uv, Extension extension, Interpolation interpolation) {
+  return look_up_alpha(image_level(image, flags_of(extension, interpolation)), uv.x, uv.y);
 }
 
-void prefetch(const Image &image, const glm::vec2 &uv, Extension extension) {
+void prefetch(const ImageView &image, const glm::vec2 &uv, Extension extension) {
   if (!std::isfinite(uv.x) || !std::isfinite(uv.y))
     return;
   const Taps<float> across = taps(uv.x, image.width, extension, Interpolation::Linear);
@@ -62,7 +62,7 @@ void prefetch(const Image &image, const glm::vec2 &uv, Extension extension) {
   // Neighbours in a row mostly share a cache line.
   for (int i = 0; i < 2; ++i)
     if (up.there[i] && across.there[0])
-      __builtin_prefetch(image.texels.get() + (size_t(up.at[i]) * image.width + size_t(across.at[0])) * texel);
+      __builtin_prefetch(image.texels + (size_t(up.at[i]) * image.width + size_t(across.at[0])) * texel);
 }
 
 } // namespace lancer

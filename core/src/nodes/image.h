@@ -13,7 +13,8 @@ const float *srgb_lines();
 const float *srgb_bytes();
 float srgb_to_linear(float c);
 
-struct ImageView {
+// A level of an image, as nodes with some flags look it up.
+struct ImageLevel {
   const std::byte *texels = nullptr;
   const glm::mat3 *matrix = nullptr; // null: decoded colours are in the working space
   uint32_t width = 0, height = 0, channels = 0;
@@ -28,11 +29,11 @@ struct ImageView {
   uint32_t blocks_across = 0; // 0: texels are rows
 };
 
-// Returns the view of a level of the image, of nodes with these flags. Valid as long as the image is neither changed nor moved.
-LANCER_LANE ImageView image_view(const Image &image, uint32_t flags, uint32_t level = 0) {
+// Returns a level of the image as nodes with these flags look it up. Valid as long as the image is neither changed nor moved.
+LANCER_LANE ImageLevel image_level(const ImageView &image, uint32_t flags, uint32_t level = 0) {
   const bool multiplied = image.alpha == AlphaMode::Associated || image.alpha == AlphaMode::Straight;
-  ImageView r;
-  r.texels = image.data() + image.level_offset(level);
+  ImageLevel r;
+  r.texels = image.texels + image.level_offset(level);
   r.matrix = image.has_matrix ? &image.matrix : nullptr;
   r.width = level_side(image.width, level);
   r.height = level_side(image.height, level);
@@ -44,19 +45,19 @@ LANCER_LANE ImageView image_view(const Image &image, uint32_t flags, uint32_t le
   r.large = image.level_bytes(level) >= uint64_t(1) << 31;
   r.keeps_alpha = image.channels == 4 && image.alpha != AlphaMode::None;
   r.has_gaps = image.has_gaps;
-  r.blocks_across = image.blocks ? blocks_along(r.width) : 0;
+  r.blocks_across = image.in_blocks ? blocks_along(r.width) : 0;
   r.straight = (flags & 256) && multiplied && image.channels > 1;
   return r;
 }
 
 // Returns the colour at (u, v), (0, 0) the lower left corner and (1, 1) the upper right, in the working space; w is alpha.
 // straight: divide the colour by alpha if the image's mode keeps it multiplied.
-glm::vec4 lookup(const Image &image, glm::vec2 uv, Extension extension, Interpolation interpolation, bool straight);
+glm::vec4 lookup(const ImageView &image, glm::vec2 uv, Extension extension, Interpolation interpolation, bool straight);
 
 // Returns the alpha only.
-float lookup_alpha(const Image &image, const glm::vec2 &uv, Extension extension, Interpolation interpolation);
+float lookup_alpha(const ImageView &image, const glm::vec2 &uv, Extension extension, Interpolation interpolation);
 
 // Prefetches the texels that a lookup at uv reads.
-void prefetch(const Image &image, const glm::vec2 &uv, Extension extension);
+void prefetch(const ImageView &image, const glm::vec2 &uv, Extension extension);
 
 } // namespace lancer

@@ -25,8 +25,8 @@ template <class F> LANCER_LANE Place<F> squared(const Place<Dual<F>> &place) {
 // Replaces a missing image.
 template <class F> LANCER_LANE Value<F> missing() { return solid(Vector3<F>(F(1.0f), F(0.0f), F(1.0f))); }
 
-template <class F> LANCER_LANE const Image &picture(const Inputs<F> &in, const Site<F> &site, uint32_t number) {
-  return (*site.scene.images)[in.node.image + number];
+template <class F> LANCER_LANE const ImageView &picture(const Inputs<F> &in, uint32_t number) {
+  return in.images[in.node.image + number];
 }
 
 // Returns a number in [0, 1) that differs from hit to hit, and from node to node.
@@ -39,10 +39,10 @@ template <class F> F number_of_hit(const Site<F> &site, const Node &node) {
   return unit_of<F>(cell_hash({word(site.p.x), word(site.p.y), word(site.p.z), U(uint32_t(node.inputs[0].node))}));
 }
 
-template <class F> Value<F> look_up(const Inputs<F> &in, const Site<F> &site, const Image &image, const Place<F> &place) {
+template <class F> Value<F> look_up(const Inputs<F> &in, const Site<F> &site, const ImageView &image, const Place<F> &place) {
   Texel<F> found;
   if (image.levels == 1) {
-    found = look_up(image_view(image, in.node.flags), place.u, place.v);
+    found = look_up(image_level(image, in.node.flags), place.u, place.v);
   } else {
     const F width(static_cast<float>(image.width)), height(static_cast<float>(image.height));
     const F number = number_of_hit(site, in.node), across2 = place.u2 * (width * width), up2 = place.v2 * (height * height);
@@ -60,7 +60,7 @@ Value<F> look_up_each(const Inputs<F> &in, const Site<F> &site, const WordOf<F> 
   for (uint32_t i = 0; i < in.node.image_count; ++i) {
     const auto here = equal(number, WordOf<F>(i));
     if (any(here))
-      r = select(here, look_up(in, site, picture(in, site, i), place), r);
+      r = select(here, look_up(in, site, picture(in, i), place), r);
   }
   return r;
 }
@@ -76,7 +76,7 @@ template <class F> Value<F> look_up_tile(const Inputs<F> &in, const Site<F> &sit
   const U tile = U(1001u) + across + U(10u) * up;
   const U number = by_lane<U>([&](int i) {
     uint32_t k = 0;
-    while (k < in.node.image_count && picture(in, site, k).tile != lane(tile, i))
+    while (k < in.node.image_count && picture(in, k).tile != lane(tile, i))
       ++k;
     return k;
   });
@@ -134,7 +134,7 @@ template <class F, class N> void box_places(const Vector3<N> &p, const Vector3<F
   places[2] = {select(n.z > zero, one - p.y, p.y), p.x};
 }
 
-template <class F> Value<F> box(const Program &program, const Inputs<F> &in, const Site<F> &site, const Image &image) {
+template <class F> Value<F> box(const ProgramView &program, const Inputs<F> &in, const Site<F> &site, const ImageView &image) {
   const F zero(0.0f), one(1.0f);
   const Vector3<F> n = normal_to_object(site, site.ns), size = abs(n);
   const F sum = size.x + size.y + size.z;
@@ -188,10 +188,10 @@ template <class N> Place<N> projected(uint32_t projection, const Vector3<N> &p) 
                                                : Place<N>{p.x, p.y};
 }
 
-template <class F> Value<F> image_node(const Program &program, const Inputs<F> &in, const Site<F> &site) {
+template <class F> Value<F> image_node(const ProgramView &program, const Inputs<F> &in, const Site<F> &site) {
   if (in.node.image_count == 0)
     return missing<F>();
-  const Image &first = picture(in, site, 0);
+  const ImageView &first = picture(in, 0);
   if (in.node.option == ImageProjection::Box)
     return box(program, in, site, first);
   const Place<F> place = in.node.mipmapped ? squared(projected(in.node.option, ChangingInputs<F>{program, in, in.node}[0]))
@@ -206,7 +206,7 @@ template <class N> Place<N> on_mirror_ball(const Vector3<N> &d) {
   return {half * (d.x / length + one), half * (d.z / length + one)};
 }
 
-template <class F> Value<F> environment_node(const Program &program, const Inputs<F> &in, const Site<F> &site) {
+template <class F> Value<F> environment_node(const ProgramView &program, const Inputs<F> &in, const Site<F> &site) {
   using D = DoubleOf<F>;
   const Vector3<F> given = in[0];
   if (in.node.option == EnvironmentProjection::Cube)
@@ -230,7 +230,7 @@ template <class F> Value<F> environment_node(const Program &program, const Input
     place.u2 = changing.u2;
     place.v2 = changing.v2;
   }
-  return look_up(in, site, picture(in, site, 0), place);
+  return look_up(in, site, picture(in, 0), place);
 }
 
 } // namespace

@@ -116,7 +116,7 @@ template <class F> LANCER_LANE Alpha<F> select(const MaskOf<F> &m, const Alpha<F
 }
 
 // Returns the number of a texel in memory, in rows or in blocks.
-template <class N> LANCER_LANE N texel_number(const ImageView &image, const N &column, const N &row) {
+template <class N> LANCER_LANE N texel_number(const ImageLevel &image, const N &column, const N &row) {
   if (!image.blocks_across)
     return row * N(image.width) + column;
   const N last((1u << kBlockShift) - 1u);
@@ -126,7 +126,7 @@ template <class N> LANCER_LANE N texel_number(const ImageView &image, const N &c
 
 // Returns the words at this byte offset into a texel.
 template <uint32_t Bytes, class F>
-LANCER_LANE WordOf<F> words_at(const ImageView &image, const F &x, const F &y, uint32_t into) {
+LANCER_LANE WordOf<F> words_at(const ImageLevel &image, const F &x, const F &y, uint32_t into) {
   using U = WordOf<F>;
   const U column = truncate(x), row = truncate(y);
   const uint32_t texel = image.channels * Bytes;
@@ -149,7 +149,7 @@ template <uint32_t Bytes, class F> LANCER_LANE F channel(const WordOf<F> &word, 
   else
     return to_float((word >> static_cast<int>(8 * byte)) & U(0xffu)) * F(1.0f / 255.0f);
 }
-template <uint32_t Bytes, class F> LANCER_LANE void read(const ImageView &image, const F &x, const F &y, Texel<F> &result) {
+template <uint32_t Bytes, class F> LANCER_LANE void read(const ImageLevel &image, const F &x, const F &y, Texel<F> &result) {
   // A word holds one float, two or four channels.
   const WordOf<F> word = words_at<Bytes>(image, x, y, 0);
   const F first = channel<Bytes, F>(word, 0);
@@ -166,7 +166,7 @@ template <uint32_t Bytes, class F> LANCER_LANE void read(const ImageView &image,
                                                                                             : Bytes == 2 ? 2
                                                                                                          : 3);
 }
-template <uint32_t Bytes, class F> LANCER_LANE void read(const ImageView &image, const F &x, const F &y, Alpha<F> &result) {
+template <uint32_t Bytes, class F> LANCER_LANE void read(const ImageLevel &image, const F &x, const F &y, Alpha<F> &result) {
   result.alpha = F(1.0f);
   if (image.keeps_alpha)
     result.alpha = channel<Bytes, F>(words_at<Bytes>(image, x, y,
@@ -179,7 +179,7 @@ template <uint32_t Bytes, class F> LANCER_LANE void read(const ImageView &image,
 }
 
 template <uint32_t Bytes, class Found, class F>
-LANCER_LANE Found between(const ImageView &image, const Taps<F> &across, const Taps<F> &up) {
+LANCER_LANE Found between(const ImageLevel &image, const Taps<F> &across, const Taps<F> &up) {
   const auto at = [&](int x, int y) __attribute__((always_inline)) {
     Found texel;
     read<Bytes>(image, across.at[x], up.at[y], texel);
@@ -211,7 +211,7 @@ LANCER_LANE Found between(const ImageView &image, const Taps<F> &across, const T
   return select(whole, found, sum);
 }
 
-template <class Found, class F> LANCER_LANE Found found_at(const ImageView &image, const F &u, const F &v) {
+template <class Found, class F> LANCER_LANE Found found_at(const ImageLevel &image, const F &u, const F &v) {
   const Taps<F> across = taps(u, image.width, image.extension, image.interpolation);
   const Taps<F> up = taps(v, image.height, image.extension, image.interpolation);
   return image.texel_bytes == 4   ? between<4, Found>(image, across, up)
@@ -237,7 +237,7 @@ template <class F> LANCER_LANE F decode_byte(const F &value) {
 
 // Returns the colour at (u, v), (0, 0) the lower left corner and (1, 1) the upper right, in the working space; 0 if a
 // coordinate is not finite.
-template <class F> LANCER_LANE Texel<F> look_up(const ImageView &image, const F &u, const F &v) {
+template <class F> LANCER_LANE Texel<F> look_up(const ImageLevel &image, const F &u, const F &v) {
   const F zero(0.0f), one(1.0f);
   const auto place = is_finite(u) & is_finite(v);
   Texel<F> texel = found_at<Texel<F>>(image, select(place, u, zero), select(place, v, zero));
@@ -275,7 +275,7 @@ template <class F> LANCER_LANE Texel<F> look_up(const ImageView &image, const F 
 // Returns the level of an image for a place whose coordinates change over a pixel by distances of these squares, in texels: the
 // smaller change decides, but at most four levels below the larger one. u in [0, 1) chooses between two levels near their
 // border, as Cycles does; without it, the finer one is taken.
-template <class F> LANCER_LANE WordOf<F> level_of(const Image &image, const F &across2, const F &up2, const F *u) {
+template <class F> LANCER_LANE WordOf<F> level_of(const ImageView &image, const F &across2, const F &up2, const F *u) {
   using U = WordOf<F>;
   const F zero(0.0f), most(3.0e38f), smaller = min(across2, up2), larger = max(across2, up2);
   const F change2 = min(max(smaller, larger * F(1.0f / 256.0f)), most);
@@ -289,7 +289,7 @@ template <class F> LANCER_LANE WordOf<F> level_of(const Image &image, const F &a
 
 // Looks up each lane in its own level. Beyond the edge of a clipped image all is 0, also within half a texel.
 template <class F>
-LANCER_LANE Texel<F> look_up_level(const Image &image, uint32_t flags, const F &u, const F &v, const WordOf<F> &level) {
+LANCER_LANE Texel<F> look_up_level(const ImageView &image, uint32_t flags, const F &u, const F &v, const WordOf<F> &level) {
   Texel<F> texel = Texel<F>::zero();
   for (uint32_t i = 0; i < image.levels; ++i) {
     const auto here = equal(level, WordOf<F>(i));
@@ -298,7 +298,7 @@ LANCER_LANE Texel<F> look_up_level(const Image &image, uint32_t flags, const F &
     // Other lanes look where one of these looks: their own texels of this level may be on no page in memory.
     const int one = __builtin_ctz(bits(here));
     const F x = select(here, u, F(lane(u, one))), y = select(here, v, F(lane(v, one)));
-    texel = select(here, look_up(image_view(image, flags, i), x, y), texel);
+    texel = select(here, look_up(image_level(image, flags, i), x, y), texel);
   }
   const F zero(0.0f), whole(1.0f);
   if (static_cast<Extension>(flags & 0xf) != Extension::Clip)
@@ -307,7 +307,7 @@ LANCER_LANE Texel<F> look_up_level(const Image &image, uint32_t flags, const F &
 }
 
 // Returns the alpha only.
-template <class F> LANCER_LANE F look_up_alpha(const ImageView &image, const F &u, const F &v) {
+template <class F> LANCER_LANE F look_up_alpha(const ImageLevel &image, const F &u, const F &v) {
   const F zero(0.0f);
   const auto place = is_finite(u) & is_finite(v);
   if (image.channels == 1)

@@ -32,7 +32,7 @@ glm::dmat3 ray_axes(const glm::dvec3 &n) {
 
 } // namespace
 
-float open_share(NodeRays &rays, const LookingPlace &at, const glm::vec3 &n, double distance, uint32_t count, bool alone,
+float open_share(const NodeRays &rays, const LookingPlace &at, const glm::vec3 &n, double distance, uint32_t count, bool alone,
                  uint32_t node) {
   const LookingNumbers numbers(at, count, node);
   const glm::dmat3 axes = ray_axes(glm::dvec3(n));
@@ -78,7 +78,7 @@ double cubic_distance(double u) {
 
 } // namespace
 
-glm::vec3 bevelled_normal(NodeRays &rays, const LookingPlace &at, double radius, uint32_t count, uint32_t node) {
+glm::vec3 bevelled_normal(const NodeRays &rays, const LookingPlace &at, double radius, uint32_t count, uint32_t node) {
   const LookingNumbers numbers(at, count, node);
   const glm::dmat3 axes = ray_axes(glm::dvec3(at.surface.ng));
   glm::dvec3 sum(0.0);

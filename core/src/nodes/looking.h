@@ -10,17 +10,23 @@
 
 namespace lancer {
 
-// The hits of rays that nodes send. One object per thread. instance: the only one whose hits count; kNone: all count.
-class NodeRays {
-public:
-  virtual ~NodeRays() = default;
+// The hits of rays that nodes send: functions of a tracer, one per thread. instance: the only one whose hits count; kNone: all
+// count.
+struct NodeRays {
   static constexpr uint32_t kMost = 16; // rays of one call
+
+  void *tracer = nullptr;
+  uint32_t (*count_open)(void *tracer, std::span<const Ray> rays, uint32_t instance) = nullptr;
+  Hit (*find_closest)(void *tracer, const Ray &ray, uint32_t instance) = nullptr;
+  std::span<const Hit> (*find_all)(void *tracer, const Ray &ray, uint32_t instance) = nullptr;
+  Surface (*find_surface)(const void *tracer, const Ray &ray, const Hit &hit) = nullptr;
+
   // Returns how many rays meet nothing.
-  virtual uint32_t open(std::span<const Ray> rays, uint32_t instance) = 0;
-  virtual Hit closest(const Ray &ray, uint32_t instance) = 0;
+  uint32_t open(std::span<const Ray> rays, uint32_t instance) const { return count_open(tracer, rays, instance); }
+  Hit closest(const Ray &ray, uint32_t instance) const { return find_closest(tracer, ray, instance); }
   // Returns the hits with an instance, those at one distance as one, valid until the next call.
-  virtual std::span<const Hit> all(const Ray &ray, uint32_t instance) = 0;
-  virtual Surface surface(const Ray &ray, const Hit &hit) const = 0;
+  std::span<const Hit> all(const Ray &ray, uint32_t instance) const { return find_all(tracer, ray, instance); }
+  Surface surface(const Ray &ray, const Hit &hit) const { return find_surface(tracer, ray, hit); }
 };
 
 // Where a node looks around.
@@ -35,12 +41,12 @@ struct LookingPlace {
 
 // Returns the share of rays that meet nothing within a distance (normalised units), cosine-distributed around n. count: of
 // rays; node: number of the node, whose random numbers are its own.
-float open_share(NodeRays &rays, const LookingPlace &at, const glm::vec3 &n, double distance, uint32_t count, bool alone,
+float open_share(const NodeRays &rays, const LookingPlace &at, const glm::vec3 &n, double distance, uint32_t count, bool alone,
                  uint32_t node);
 
 // Returns the mean normal of the object's own surface within a radius (normalised units), on the side of the place's own: the
 // normal of an edge that is rounded; 0 if no point is found. Weights fall with the cube of the distance to the radius; points
 // are found by rays along three axes (King et al., BSSRDF Importance Sampling, 2013).
-glm::vec3 bevelled_normal(NodeRays &rays, const LookingPlace &at, double radius, uint32_t count, uint32_t node);
+glm::vec3 bevelled_normal(const NodeRays &rays, const LookingPlace &at, double radius, uint32_t count, uint32_t node);
 
 } // namespace lancer

@@ -85,12 +85,12 @@ template <class F> Value<F> bevel_node(const Inputs<F> &in, const Site<F> &site,
 inline bool is_way(double squared_length) { return squared_length > 0.0 && std::isfinite(squared_length); }
 
 // Returns an attribute where a ray has met a surface. flags 2: its mean, or the first of two numbers; 4: its alpha.
-inline glm::vec3 attribute_of_hit(const Geometry &geometry, const Hit &hit, const Node &node) {
+inline glm::vec3 attribute_of_hit(const GeometryView &geometry, const Hit &hit, const Node &node) {
   const Instance &instance = geometry.instances[hit.instance];
   // An exact shape has no attributes.
   if (instance.kind != ShapeKind::Mesh)
     return glm::vec3(node.flags & 4 ? 1.0f : 0.0f);
-  const Mesh &mesh = geometry.meshes[instance.mesh];
+  const MeshView &mesh = geometry.meshes[instance.mesh];
   const glm::vec4 value = attribute_at(mesh, node.name, hit.primitive, {hit.u, hit.v});
   if (node.flags & 4)
     return glm::vec3(value.w);

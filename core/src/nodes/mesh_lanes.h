@@ -119,7 +119,7 @@ template <class F> Edges<F> edges_of(const Site<F> &site) {
   load_corners(
       site,
       [&](int i, glm::vec3(&at)[3]) {
-        const Mesh &mesh = *site.mesh[i];
+        const MeshView &mesh = *site.mesh[i];
         for (int corner = 0; corner < 3; ++corner)
           at[corner] = mesh.positions[(&mesh.triangles[site.primitive[i]].x)[corner]];
       },

@@ -136,7 +136,7 @@ Between between(uint32_t i, uint32_t side, uint32_t before) {
 }
 
 template <class Texel> void make(Image &image) {
-  const auto at = [&](uint32_t level) { return reinterpret_cast<Texel *>(image.texels.get() + image.level_offset(level)); };
+  const auto at = [&](uint32_t level) { return reinterpret_cast<Texel *>(image.memory.get() + image.level_offset(level)); };
   const uint32_t channels = image.channels;
   std::vector<float> before, now, rows[2];
   for (uint32_t level = 1; level < image.levels; ++level) {

@@ -59,7 +59,7 @@ Site<float> site_of(const NodeContext &context) {
 
 } // namespace
 
-void run(const Program &program, const Schedule &schedule, const NodeContext &context, std::span<glm::vec4> values) {
+void run(const ProgramView &program, ScheduleView schedule, const NodeContext &context, std::span<glm::vec4> values) {
   if (!schedule.empty())
     run_nodes(program, schedule, site_of(context), Values<float>{glm::value_ptr(values.front()), 1});
 }
@@ -81,7 +81,7 @@ bool inverse_transpose(const float (&rows)[9], double (&result)[9]) {
   return true;
 }
 
-void MaterialNodes::run(const Program &program, const Schedule &schedule, const Surface &surface, const View &view) {
+void MaterialNodes::run(const ProgramView &program, ScheduleView schedule, const Surface &surface, const View &view) {
   if (schedule.empty())
     return;
   context_.surface = &surface;
@@ -91,7 +91,7 @@ void MaterialNodes::run(const Program &program, const Schedule &schedule, const 
   lancer::run(program, schedule, context_, values_);
 }
 
-void MaterialNodes::run_painted(const Program &program, const Schedule &schedule, const Hit &hit) {
+void MaterialNodes::run_painted(const ProgramView &program, ScheduleView schedule, const Hit &hit) {
   Surface surface;
   surface.instance = hit.instance;
   surface.primitive = hit.primitive;
@@ -99,9 +99,9 @@ void MaterialNodes::run_painted(const Program &program, const Schedule &schedule
   run(program, schedule, surface, {});
 }
 
-size_t most_values(std::span<const Material> materials) {
+size_t most_values(std::span<const MaterialView> materials) {
   size_t most = 0;
-  for (const Material &material : materials)
+  for (const MaterialView &material : materials)
     most = std::max(most, material.program.value_count());
   return most;
 }

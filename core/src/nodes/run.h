@@ -36,12 +36,12 @@ struct NodeContext : NodeScene {
 };
 
 // Computes the scheduled nodes. values has room for Program::value_count().
-void run(const Program &program, const Schedule &schedule, const NodeContext &context, std::span<glm::vec4> values);
+void run(const ProgramView &program, ScheduleView schedule, const NodeContext &context, std::span<glm::vec4> values);
 
 // Runs a program for a block.
 struct NodeKernel {
   const char *name;
-  void (*run)(const Program &program, const Schedule &schedule, const NodeBlock &block, NodeLanes *values);
+  void (*run)(const ProgramView &program, ScheduleView schedule, const NodeBlock &block, NodeLanes *values);
 };
 
 // Declares the copies of node_kernel.cpp, each compiled with LANCER_ISA set to its name.
@@ -66,13 +66,13 @@ public:
   MaterialNodes(const NodeScene &scene, size_t values) : values_(values) { static_cast<NodeScene &>(context_) = scene; }
 
   // Evaluates surfaces of this geometry instead of the scene's; it must outlive this object.
-  void set_geometry(const Geometry &geometry) { context_.geometry = &geometry; }
+  void set_geometry(const GeometryView &geometry) { context_.geometry = &geometry; }
   const NodeScene &scene() const { return context_; }
 
   // Computes the scheduled nodes at a surface.
-  void run(const Program &program, const Schedule &schedule, const Surface &surface, const View &view);
+  void run(const ProgramView &program, ScheduleView schedule, const Surface &surface, const View &view);
   // Computes nodes that read only the triangle and the place within it.
-  void run_painted(const Program &program, const Schedule &schedule, const Hit &hit);
+  void run_painted(const ProgramView &program, ScheduleView schedule, const Hit &hit);
   // The results of the last run, by number of the node.
   std::span<glm::vec4> values() { return values_; }
   glm::vec3 value(const Parameter &parameter) const { return value_of(parameter, values_); }
@@ -83,6 +83,6 @@ private:
 };
 
 // Returns the most values of a material's program.
-size_t most_values(std::span<const Material> materials);
+size_t most_values(std::span<const MaterialView> materials);
 
 } // namespace lancer

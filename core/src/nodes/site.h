@@ -76,7 +76,7 @@ template <class F> struct Site {
   bool displaces = false;                // a vertex is displaced, seen by nobody
   const Site *still = nullptr;           // then, the site of the bump itself
   const Instance *instance[kWidth];
-  const Mesh *mesh[kWidth]; // null on exact surfaces
+  const MeshView *mesh[kWidth]; // null on exact surfaces
   uint32_t primitive[kWidth];
   const glm::dvec3 *eye[kWidth];
   M on_mesh;
@@ -176,6 +176,7 @@ template <class F> struct Inputs {
   using Number = F;
   const Node &node;
   Values<F> values;
+  const ImageView *images; // of the program
 
   LANCER_LANE Vector3<F> operator[](int i) const {
     const Parameter &input = node.inputs[i];

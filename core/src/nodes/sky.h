@@ -117,7 +117,7 @@ LANCER_LANE SunDisc<F> sun_disc(bool nishita, const float *matrix, const Vector3
 
 // table: as lancer_compute_sky describes it, in RGB.
 template <class F>
-LANCER_LANE Vector3<F> scattering_sky(uint32_t model, const Image &table, const float *matrix, const Vector3<F> &given) {
+LANCER_LANE Vector3<F> scattering_sky(uint32_t model, const ImageView &table, const float *matrix, const Vector3<F> &given) {
   using D = DoubleOf<F>;
   const bool nishita = model == SkyModel::Nishita;
   const Double3Of<F> d = widen(given);
@@ -131,7 +131,7 @@ LANCER_LANE Vector3<F> scattering_sky(uint32_t model, const Image &table, const 
   const auto below = given.z < zero;
   const F v = nishita ? select(below, zero, root) : half + half * copysign(root, up);
   constexpr auto flags = static_cast<uint32_t>(Extension::Extend) | static_cast<uint32_t>(Interpolation::Linear) << 4;
-  Vector3<F> color = look_up(image_view(table, flags), u, v).color;
+  Vector3<F> color = look_up(image_level(table, flags), u, v).color;
   if (nishita && any(below)) {
     // Below the horizon, its light fades within 24 degrees.
     const F rest = max(one + F(2.5f) * given.z, zero);
@@ -144,9 +144,9 @@ LANCER_LANE Vector3<F> scattering_sky(uint32_t model, const Image &table, const 
   return color;
 }
 
-template <class F> Value<F> sky_node(const Inputs<F> &in, const Site<F> &site) {
-  const Image &table = (*site.scene.images)[in.node.image];
-  const SkyCoefficients coefficients{reinterpret_cast<const float *>(table.texels.get())};
+template <class F> Value<F> sky_node(const Inputs<F> &in) {
+  const ImageView &table = in.images[in.node.image];
+  const SkyCoefficients coefficients{reinterpret_cast<const float *>(table.texels)};
   const Vector3<F> color = in.node.option <= SkyModel::HosekWilkie
                                ? analytic_sky(in.node.option, coefficients, in.node.matrix, in[0])
                                : scattering_sky(in.node.option, table, in.node.matrix, in[0]);

@@ -90,15 +90,15 @@ template <class F> Value<F> radial_tiling_node(const Inputs<F> &in) {
   return {{tile.along, tile.distance, tile.width}, tile.turn};
 }
 
-template <class F> Value<F> ies_node(const Inputs<F> &in, const Site<F> &site) {
-  const Image &image = (*site.scene.images)[in.node.image];
-  const IesTable table{reinterpret_cast<const float *>(image.texels.get()), image.width, image.height};
+template <class F> Value<F> ies_node(const Inputs<F> &in) {
+  const ImageView &image = in.images[in.node.image];
+  const IesTable table{reinterpret_cast<const float *>(image.texels), image.width, image.height};
   return scalar(F(in.scalar(1) * ies_texture<F>(table, in[0])));
 }
 
-template <class F> Value<F> curves_node(const Inputs<F> &in, const Site<F> &site) {
-  const Image &image = (*site.scene.images)[in.node.image];
-  const CurveTable table{reinterpret_cast<const float *>(image.texels.get()),
+template <class F> Value<F> curves_node(const Inputs<F> &in) {
+  const ImageView &image = in.images[in.node.image];
+  const CurveTable table{reinterpret_cast<const float *>(image.texels),
                          image.width,
                          image.channels,
                          in.node.matrix[0],
@@ -115,7 +115,7 @@ template <class F> Value<F> curves_node(const Inputs<F> &in, const Site<F> &site
 
 // A named value of the object; 0 without one.
 template <class F> Value<F> object_attribute(const Node &node, const Site<F> &site) {
-  for (const ObjectAttribute &attribute : site.scene.geometry->object_attributes) {
+  for (const ObjectAttributeView &attribute : site.scene.geometry->object_attributes) {
     if (attribute.name != node.name)
       continue;
     const auto channel = [&](int k) __attribute__((always_inline)) {
@@ -142,7 +142,7 @@ template <class F> Value<F> object_info_node(const Node &node, const Site<F> &si
     return scalar(by_lane<F>([&](int i) { return static_cast<float>(site.instance[i]->object_index); }));
   if (node.option == ObjectFact::Attribute)
     return object_attribute(node, site);
-  const std::vector<ObjectInfo> &all = site.scene.geometry->object_infos;
+  const std::span<const ObjectInfo> all = site.scene.geometry->object_infos;
   const auto number = [&](auto which) __attribute__((always_inline)) {
     return by_lane<F>([&](int i) {
       const uint32_t at = site.instance[i]->number;

@@ -7,15 +7,15 @@ namespace lancer {
 namespace {
 
 // Returns the view of an image whose rows are those of a cube, layer by layer.
-LANCER_LANE ImageView voxel_view(const Image &image, uint32_t interpolation) {
-  ImageView r = image_view(image, uint32_t(Extension::Clip) | interpolation << 4);
+LANCER_LANE ImageLevel voxel_level(const ImageView &image, uint32_t interpolation) {
+  ImageLevel r = image_level(image, uint32_t(Extension::Clip) | interpolation << 4);
   r.keeps_alpha = true;
   return r;
 }
 
 // Returns the voxels at a point, (0, 0, 0) and (1, 1, 1) opposite corners of the cube; 0 outside, and if a coordinate is not
 // finite. Voxels beyond the border count as 0.
-template <class F> Texel<F> look_up_voxels(const ImageView &image, const Vector3<F> &p) {
+template <class F> Texel<F> look_up_voxels(const ImageLevel &image, const Vector3<F> &p) {
   const F zero(0.0f), side(static_cast<float>(image.width));
   const auto place = is_finite(p.x) & is_finite(p.y) & is_finite(p.z);
   const auto along = [&](const F &c) __attribute__((always_inline)) {
@@ -45,8 +45,8 @@ template <class F> Texel<F> look_up_voxels(const ImageView &image, const Vector3
 }
 
 // The node VOXELS.
-template <class F> Value<F> voxels_node(const Inputs<F> &in, const Site<F> &site) {
-  const Texel<F> found = look_up_voxels(voxel_view(picture(in, site, 0), in.node.option), in[0]);
+template <class F> Value<F> voxels_node(const Inputs<F> &in) {
+  const Texel<F> found = look_up_voxels(voxel_level(picture(in, 0), in.node.option), in[0]);
   return {found.color, found.alpha};
 }
 

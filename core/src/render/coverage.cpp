@@ -46,7 +46,7 @@ void Coverage::add_lamps(const LightSet &lights, const Projection &projection) {
 }
 
 // Returns false where the triangles exceed the effort, or where a surface has no bounds.
-bool Coverage::add_surfaces(const Geometry &geometry, const Projection &projection, uint64_t effort) {
+bool Coverage::add_surfaces(const GeometryView &geometry, const Projection &projection, uint64_t effort) {
   const auto spend = [&](uint64_t triangles) {
     const bool enough = triangles <= effort;
     effort -= enough ? triangles : 0;
@@ -86,7 +86,7 @@ bool Coverage::add_surfaces(const Geometry &geometry, const Projection &projecti
   return true;
 }
 
-void Coverage::add_triangles(const Projection &projection, const Affine &to_camera, const Mesh &mesh) {
+void Coverage::add_triangles(const Projection &projection, const Affine &to_camera, const MeshView &mesh) {
   points_.resize(mesh.positions.size());
   pixels_.resize(mesh.positions.size());
   for (size_t i = 0; i < points_.size(); ++i) {

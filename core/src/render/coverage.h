@@ -107,8 +107,8 @@ private:
   };
 
   void add_lamps(const LightSet &lights, const Projection &projection);
-  bool add_surfaces(const Geometry &geometry, const Projection &projection, uint64_t effort);
-  void add_triangles(const Projection &projection, const Affine &to_camera, const Mesh &mesh);
+  bool add_surfaces(const GeometryView &geometry, const Projection &projection, uint64_t effort);
+  void add_triangles(const Projection &projection, const Affine &to_camera, const MeshView &mesh);
   void add_polygon(std::span<const glm::dvec2> corners, double margin);
   // Returns the blocks in which a box may be visible.
   Blocks around(const Projection &projection, const Affine &to_camera, const glm::dvec3 &low, const glm::dvec3 &high) const;

@@ -24,7 +24,7 @@ public:
     if (material >= scene.materials.size())
       bad_argument("probe: material " + std::to_string(material) + " >= " + std::to_string(scene.materials.size()) +
                    " materials");
-    Mesh square;
+    Mesh &square = mesh_;
     square.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
     square.triangles = {{0, 1, 2}, {0, 2, 3}};
     for (const glm::uvec3 &triangle : square.triangles)
@@ -32,16 +32,16 @@ public:
         square.uvs.push_back(glm::vec2(square.positions[triangle[corner]]));
     square.low = {0, 0, 0};
     square.high = {1, 1, 0};
-    geometry_.meshes.push_back(std::move(square));
-    Instance instance;
-    instance.place(scene.normalisation.to_normalised(Affine{}));
-    geometry_.instances.push_back(instance);
+    view_ = square;
+    instance_.place(scene.normalisation.to_normalised(Affine{}));
+    geometry_.meshes = std::span(&view_, 1);
+    geometry_.instances = std::span(&instance_, 1);
     shader_.set_geometry(geometry_);
   }
 
   Surface at(glm::vec2 uv) const {
     Surface surface;
-    surface.p = geometry_.instances[0].to_world.point({double(uv.x), double(uv.y), 0.0});
+    surface.p = instance_.to_world.point({double(uv.x), double(uv.y), 0.0});
     surface.instance = 0;
     surface.material = material_;
     // Below the diagonal, the weights of vertices 1 and 2 are (u - v, v); above it, (u, v - u).
@@ -59,7 +59,10 @@ public:
   glm::vec4 node(uint32_t number, glm::vec2 uv) { return shader_.node_value(at(uv), number, glm::vec3(0.0f, 0.0f, 1.0f)); }
 
 private:
-  Geometry geometry_;
+  Mesh mesh_;
+  MeshView view_;
+  Instance instance_;
+  GeometryView geometry_;
   Shader shader_;
   uint32_t material_;
   Shaded shaded_;
@@ -156,8 +159,7 @@ void probe_lobes(const Scene &scene, uint32_t material, const float *wo, lancer_
 void evaluate_node(const lancer_node &node, float *value) {
   if (!asks_no_place(node.kind))
     bad_argument("node: kind " + std::to_string(node.kind) + " depends on the shading point");
-  Description description;
-  const Program program = read_program(description, "node", &node, 1);
+  const Program program = read_program({}, "node", &node, 1);
   glm::vec4 result(0.0f);
   run(program, Schedule{0}, NodeContext(), std::span(&result, 1));
   std::copy_n(&result.x, 4, value);

@@ -47,7 +47,7 @@ using NibbleTable = std::array<std::array<std::array<uint32_t, 16>, 8>, kJointDi
 // For each dimension and each group of four index bits, the sum of the generator matrix's columns, with reversed digits. The
 // table of 8 KB fits in the first-level cache; a table over whole bytes (64 KB) would not. An index below 4096 takes three
 // lookups.
-extern const NibbleTable kNibbles;
+LANCER_TABLE NibbleTable kNibbles;
 
 // Returns a point's coordinate in a joint dimension; bit 0 is the first digit after the binary point.
 inline uint32_t reversed_point(uint32_t index, uint32_t dimension) {

@@ -1,4 +1,4 @@
-// The description: checked copies of the user's records, in the user's units.
+// The description: checked copies of the user's records, in the user's units. Scenes that differ little share them.
 #pragma once
 
 #include "scene/geometry.h"
@@ -7,24 +7,40 @@
 #include "scene/material.h"
 #include "scene/messages.h"
 
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace lancer {
 
-struct Description {
-  Geometry geometry; // instances in the user's units, to_object not yet set
-  std::vector<uint32_t> slots;
-  std::vector<Material> materials;
-  std::vector<LightDescription> lights;
-  std::vector<Image> images;
-  std::vector<std::string> attribute_names{""}; // read by nodes; Node::name is an index into this list
-  World world;
-  uint32_t instances_given = 0; // including those left out
-  Messages messages;
+// An immutable object of any number of scenes, and the messages about it, which every scene that has the object tells.
+template <class T> struct Given {
+  std::shared_ptr<const T> object;
+  std::shared_ptr<const Messages> messages;
+
+  Given() : Given(T{}) {}
+  explicit Given(T read, Messages told = {})
+      : object(std::make_shared<const T>(std::move(read))), messages(std::make_shared<const Messages>(std::move(told))) {}
+  const T &operator*() const { return *object; }
+  const T *operator->() const { return object.get(); }
 };
 
-// Returns the index of a name in attribute_names; adds a new name.
-uint32_t attribute_name(Description &description, const std::string &name);
+struct Description {
+  std::vector<Given<Mesh>> meshes;
+  std::vector<Instance> instances; // to_object not yet set
+  std::vector<ObjectInfo> object_infos;
+  std::vector<ObjectAttribute> object_attributes;
+  std::vector<uint32_t> slots;
+  std::vector<Given<Material>> materials;
+  std::vector<Given<LightDescription>> lights;
+  std::vector<Given<Image>> images;
+  Given<World> world;
+  uint32_t instances_given = 0; // including those left out
+  Messages instance_messages;
+  Messages made_messages; // about the parts that commit() makes
+
+  // Returns all messages, in the order of the kinds of objects.
+  std::string messages() const;
+};
 
 } // namespace lancer

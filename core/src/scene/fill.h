@@ -27,8 +27,16 @@ inline void check_flags(const std::string &where, uint32_t flags, uint32_t known
     bad_argument(where + "flags " + std::to_string(flags) + " has bits beyond the last flag");
 }
 
-// Each function checks one record and copies it into the description. Throws Error, which names the object and the value; the
-// description is then unchanged.
+// Each function checks one record and copies it. Throws Error, which names the object and the value. number: names an object
+// without a name. images: those that nodes refer to by number.
+using Images = std::span<const Given<Image>>;
+Mesh read_mesh(const lancer_mesh &source, size_t number, Messages &messages);
+Image read_image(const lancer_image &source, size_t number, Messages &messages);
+Material read_material(const lancer_material &source, size_t number, Images images, Messages &messages);
+LightDescription read_light(const lancer_light &source, size_t number, Images images, Messages &messages);
+World read_world(const lancer_world &source, Images images);
+
+// Each function checks one record and copies it into the description, which stays unchanged if it throws Error.
 void add_mesh(Description &description, const lancer_mesh &mesh);
 void add_instances(Description &description, uint32_t count, const lancer_instance *instances, uint32_t slot_count,
                    const uint32_t *slots, const char *names, size_t names_size);
@@ -39,9 +47,12 @@ void add_light(Description &description, const lancer_light &light);
 void add_image(Description &description, const lancer_image &image);
 void set_world(Description &description, const lancer_world &world);
 
+// Throws an Error if an instance refers to a mesh or a material that is not there.
+void check_references(const Description &description);
+
 // Checks and copies the nodes of an owner ("material 'Wood'"); check_reference() checks a parameter that may refer to one of
 // them.
-Program read_program(Description &description, const std::string &owner, const lancer_node *nodes, uint32_t count);
+Program read_program(Images images, const std::string &owner, const lancer_node *nodes, uint32_t count);
 void check_reference(const std::string &owner, const char *what, const lancer_parameter &parameter, const Program &program);
 
 // Checks and copies a camera; throws an Error for invalid values.

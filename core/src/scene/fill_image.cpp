@@ -22,7 +22,7 @@ uint16_t multiplied(uint16_t color, uint16_t alpha) { return uint16_t(uint32_t(c
 float multiplied(float color, float alpha) { return color * alpha; }
 
 template <class Texel> void associate(Image &image) {
-  auto *texel = reinterpret_cast<Texel *>(image.texels.get());
+  auto *texel = reinterpret_cast<Texel *>(image.memory.get());
   const size_t count = size_t(image.width) * image.height;
   for (size_t i = 0; i < count; ++i, texel += 4)
     for (int c = 0; c < 3; ++c)
@@ -31,7 +31,7 @@ template <class Texel> void associate(Image &image) {
 
 // Returns the number of texels that are not finite. They stay: a look-up that reads one gives black.
 size_t count_gaps(const Image &image) {
-  const auto *texel = reinterpret_cast<const float *>(image.texels.get());
+  const auto *texel = reinterpret_cast<const float *>(image.texels);
   const size_t count = size_t(image.width) * image.height;
   size_t gaps = 0;
   for (size_t i = 0; i < count; ++i, texel += image.channels) {
@@ -80,11 +80,11 @@ void copy_rows(const std::string &object, const void *rows, Image &image) {
   const std::string texels = object + ": " + std::to_string(image.width) + " x " + std::to_string(image.height) + " texels";
   check_memory(texels, double(image.bytes()));
   try {
-    image.texels = allocate_texels(image.bytes());
+    image.keep(allocate_texels(image.bytes()));
   } catch (const std::bad_alloc &) {
     throw Error(Fault::Memory, texels + " need " + std::to_string(image.bytes() / 1000000) + " MB, more than is free");
   }
-  std::memcpy(image.texels.get(), rows, image.level_bytes(0));
+  std::memcpy(image.memory.get(), rows, image.level_bytes(0));
 }
 
 uint32_t levels_of(uint32_t width, uint32_t height) {
@@ -96,8 +96,8 @@ uint32_t levels_of(uint32_t width, uint32_t height) {
 
 } // namespace
 
-void add_image(Description &description, const lancer_image &source) {
-  const std::string object = label("image", source.name, description.images.size());
+Image read_image(const lancer_image &source, size_t number, Messages &messages) {
+  const std::string object = label("image", source.name, number);
   check_image(object, source);
   Image image;
   image.name = source.name ? source.name : "";
@@ -114,13 +114,14 @@ void add_image(Description &description, const lancer_image &source) {
       image.matrix[column][row] = source.matrix[3 * row + column];
   image.has_matrix = image.matrix != glm::mat3(1.0f);
   const bool is_copied = source.layout == LANCER_LAYOUT_ROWS;
+  image.in_blocks = !is_copied;
   if (is_copied)
     copy_rows(object, source.texels, image);
   else
-    image.blocks = static_cast<const std::byte *>(source.texels);
+    image.texels = static_cast<const std::byte *>(source.texels);
   if (const size_t gaps = image.kind != TexelKind::Float ? 0 : is_copied ? count_gaps(image) : source.gaps) {
     image.has_gaps = true;
-    description.messages.add(object, std::to_string(gaps) + " texels are not finite, look-ups that read one give black");
+    messages.add(object, std::to_string(gaps) + " texels are not finite, look-ups that read one give black");
   }
   if (is_copied && image.alpha == AlphaMode::Straight && image.channels == 4) {
     if (image.kind == TexelKind::U8)
@@ -130,7 +131,13 @@ void add_image(Description &description, const lancer_image &source) {
     else
       associate<float>(image);
   }
-  description.images.push_back(std::move(image));
+  return image;
+}
+
+void add_image(Description &description, const lancer_image &source) {
+  Messages messages;
+  Image image = read_image(source, description.images.size(), messages);
+  description.images.emplace_back(std::move(image), std::move(messages));
 }
 
 } // namespace lancer

@@ -3,6 +3,7 @@
 #include "scene/description.h"
 #include "scene/fill.h"
 #include "scene/messages.h"
+#include "scene/names.h"
 
 #include <algorithm>
 #include <cmath>
@@ -54,8 +55,8 @@ void check_instance(const Description &description, const std::string &object, c
                     uint32_t slot_count) {
   if (given.kind > LANCER_CONE)
     bad_argument(object + ": kind " + std::to_string(given.kind) + " is not a shape");
-  if (given.kind == LANCER_MESH && given.mesh >= description.geometry.meshes.size())
-    bad_argument(object + ": mesh " + std::to_string(given.mesh) + " >= " + std::to_string(description.geometry.meshes.size()) +
+  if (given.kind == LANCER_MESH && given.mesh >= description.meshes.size())
+    bad_argument(object + ": mesh " + std::to_string(given.mesh) + " >= " + std::to_string(description.meshes.size()) +
                  " meshes");
   if (given.shading > LANCER_SHADING_PHONG)
     bad_argument(object + ": shading " + std::to_string(given.shading) + " is not one of 0 ... 3");
@@ -64,6 +65,13 @@ void check_instance(const Description &description, const std::string &object, c
   if (uint64_t(given.first_slot) + given.slot_count > slot_count)
     bad_argument(object + ": slots " + std::to_string(given.first_slot) + " + " + std::to_string(given.slot_count) + " > " +
                  std::to_string(slot_count) + " slots");
+}
+
+void check_slots(std::span<const uint32_t> slots, const Description &description) {
+  for (size_t i = 0; i < slots.size(); ++i)
+    if (slots[i] >= description.materials.size())
+      bad_argument("instances: slot " + std::to_string(i) + " refers to material " + std::to_string(slots[i]) +
+                   " >= " + std::to_string(description.materials.size()) + " materials");
 }
 
 // Checks an array of finite numbers with a row for each of the first count instances.
@@ -86,11 +94,7 @@ void add_instances(Description &description, uint32_t count, const lancer_instan
     bad_argument("instances: slots is NULL for " + std::to_string(slot_count) + " slots");
   if (names_size && (!names || names[names_size - 1] != '\0'))
     bad_argument("instances: names must end with a NUL");
-  for (uint32_t i = 0; i < slot_count; ++i) {
-    if (slots[i] >= description.materials.size())
-      bad_argument("instances: slot " + std::to_string(i) + " refers to material " + std::to_string(slots[i]) +
-                   " >= " + std::to_string(description.materials.size()) + " materials");
-  }
+  check_slots(std::span(slots, slot_count), description);
   // Check all before adding any: a rejected call adds nothing.
   const auto name_of = [&](const lancer_instance &given) { return given.name < names_size ? names + given.name : ""; };
   for (uint32_t i = 0; i < count; ++i) {
@@ -103,14 +107,14 @@ void add_instances(Description &description, uint32_t count, const lancer_instan
 
   const uint32_t slot_base = uint32_t(description.slots.size());
   description.slots.insert(description.slots.end(), slots, slots + slot_count);
-  description.geometry.instances.reserve(description.geometry.instances.size() + count);
+  description.instances.reserve(description.instances.size() + count);
   for (uint32_t i = 0; i < count; ++i) {
     const lancer_instance &given = instances[i];
     Instance instance;
     instance.number = description.instances_given + i;
     const Placement placement = placement_of(Affine::from_rows(given.matrix), given.kind);
     if (!placement.fault.empty()) {
-      description.messages.add(label("object", name_of(given), instance.number), placement.fault + "; it was left out");
+      description.instance_messages.add(label("object", name_of(given), instance.number), placement.fault + "; it was left out");
       continue;
     }
     instance.to_world = placement.map;
@@ -124,9 +128,17 @@ void add_instances(Description &description, uint32_t count, const lancer_instan
     instance.hidden_from = given.hidden_from;
     instance.terminator = std::isfinite(given.terminator) ? std::clamp(given.terminator, 0.0f, 1.0f) : 0.0f;
     instance.holdout = (given.flags & LANCER_INSTANCE_HOLDOUT) != 0;
-    description.geometry.instances.push_back(std::move(instance));
+    description.instances.push_back(std::move(instance));
   }
   description.instances_given += count;
+}
+
+void check_references(const Description &description) {
+  for (const Instance &instance : description.instances)
+    if (instance.kind == ShapeKind::Mesh && instance.mesh >= description.meshes.size())
+      bad_argument("instance #" + std::to_string(instance.number) + ": mesh " + std::to_string(instance.mesh) + " >= " + std::to_string(description.meshes.size()) +
+                   " meshes");
+  check_slots(description.slots, description);
 }
 
 void set_object_infos(Description &description, uint32_t count, const float *infos) {
@@ -137,7 +149,7 @@ void set_object_infos(Description &description, uint32_t count, const float *inf
     const float *info = infos + i * kNumbers;
     all[i] = {{info[0], info[1], info[2], info[3]}, info[4]};
   }
-  description.geometry.object_infos = std::move(all);
+  description.object_infos = std::move(all);
 }
 
 void add_object_attribute(Description &description, const char *name, uint32_t count, const float *values) {
@@ -147,8 +159,8 @@ void add_object_attribute(Description &description, const char *name, uint32_t c
     bad_argument(what + ": name is NULL");
   check_rows(description, what, count, kNumbers, values);
   ObjectAttribute attribute;
-  attribute.name = attribute_name(description, name);
-  for (const ObjectAttribute &other : description.geometry.object_attributes)
+  attribute.name = attribute_name(name);
+  for (const ObjectAttribute &other : description.object_attributes)
     if (other.name == attribute.name)
       bad_argument(what + ": was added before");
   attribute.values.reserve(count);
@@ -156,7 +168,7 @@ void add_object_attribute(Description &description, const char *name, uint32_t c
     const float *row = values + i * kNumbers;
     attribute.values.emplace_back(row[0], row[1], row[2], row[3]);
   }
-  description.geometry.object_attributes.push_back(std::move(attribute));
+  description.object_attributes.push_back(std::move(attribute));
 }
 
 } // namespace lancer

@@ -71,8 +71,8 @@ Parameter read_strength(const std::string &object, const lancer_parameter &sourc
 
 } // namespace
 
-void add_light(Description &description, const lancer_light &source) {
-  const std::string object = label("light", source.name, description.lights.size());
+LightDescription read_light(const lancer_light &source, size_t number, Images images, Messages &messages) {
+  const std::string object = label("light", source.name, number);
   if (source.kind > LANCER_AREA)
     bad_argument(object + ": kind " + std::to_string(source.kind) + " is not a light");
   if (source.shape > LANCER_ELLIPSE)
@@ -84,15 +84,16 @@ void add_light(Description &description, const lancer_light &source) {
   LightDescription light;
   light.name = source.name ? source.name : "";
   light.kind = static_cast<LightKind>(source.kind);
-  light.program = read_program(description, object, source.nodes, source.node_count);
+  light.program = read_program(images, object, source.nodes, source.node_count);
   if (source.node_count)
     light.strength = read_strength(object, source.strength, light.program);
+  light.schedule = light.program.schedule(std::span(&light.strength, 1));
   light.to_world = Affine::from_rows(source.matrix);
   if (!light.to_world.finite()) {
-    description.messages.add(object, "its matrix is not finite; it gives no light");
+    messages.add(object, "its matrix is not finite; it gives no light");
     light.to_world = Affine{};
   } else {
-    LightReader reader(object, description.messages);
+    LightReader reader(object, messages);
     // A negative emission subtracts light.
     light.emission = reader.read("emission", source.emission, -kBrightest);
     light.radius = reader.read("radius", source.radius, 0.0f, kBrightest);
@@ -122,18 +123,23 @@ void add_light(Description &description, const lancer_light &source) {
     light.diffuse_color = reader.read("diffuse colour", source.diffuse_color);
     light.specular_color = reader.read("specular colour", source.specular_color);
   }
-  // Add a light without emission, too, so that lights have the numbers in which the caller adds them.
-  description.lights.push_back(std::move(light));
+  return light;
 }
 
-// Checks and copies the world.
-void set_world(Description &description, const lancer_world &source) {
+void add_light(Description &description, const lancer_light &source) {
+  Messages messages;
+  LightDescription light = read_light(source, description.lights.size(), description.images, messages);
+  // Add a light without emission, too, so that lights have the numbers in which the caller adds them.
+  description.lights.emplace_back(std::move(light), std::move(messages));
+}
+
+World read_world(const lancer_world &source, Images images) {
   constexpr uint32_t widest = 1u << 16;
   if (source.map_resolution > widest)
     bad_argument("world: map resolution " + std::to_string(source.map_resolution) + " is above " + std::to_string(widest));
   check_rays("world", source.hidden_from);
   World world;
-  world.program = read_program(description, "world", source.nodes, source.node_count);
+  world.program = read_program(images, "world", source.nodes, source.node_count);
   check_reference("world", "radiance", source.radiance, world.program);
   for (int i = 0; i < 3; ++i) {
     const float value = source.radiance.value[i];
@@ -151,7 +157,11 @@ void set_world(Description &description, const lancer_world &source) {
   world.schedule = world.program.schedule(std::span(&world.radiance, 1));
   world.hidden_from = source.hidden_from;
   world.map_resolution = source.map_resolution;
-  description.world = std::move(world);
+  return world;
+}
+
+void set_world(Description &description, const lancer_world &source) {
+  description.world = Given<World>(read_world(source, description.images));
 }
 
 } // namespace lancer

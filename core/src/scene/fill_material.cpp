@@ -87,13 +87,13 @@ private:
   Messages &messages_;
 };
 
-std::shared_ptr<const PrincipledDescription> read_principled(const MaterialReader &reader, const lancer_principled &given) {
-  auto principled = std::make_shared<PrincipledDescription>();
-  principled->rules = static_cast<Rules>(given.rules);
-  principled->distribution = static_cast<Facets>(given.distribution);
-  principled->option = given.option;
-  principled->subsurface_option = given.subsurface_option;
-#define LANCER_READ(kind, name, spoken, used) principled->name = reader.read<ParameterKind::kind>(spoken, given.name, used);
+PrincipledDescription read_principled(const MaterialReader &reader, const lancer_principled &given) {
+  PrincipledDescription principled;
+  principled.rules = static_cast<Rules>(given.rules);
+  principled.distribution = static_cast<Facets>(given.distribution);
+  principled.option = given.option;
+  principled.subsurface_option = given.subsurface_option;
+#define LANCER_READ(kind, name, spoken, used) principled.name = reader.read<ParameterKind::kind>(spoken, given.name, used);
   LANCER_PRINCIPLED_PARAMETERS(LANCER_READ)
 #undef LANCER_READ
   return principled;
@@ -232,8 +232,8 @@ void make_schedules(Material &material) {
 
 } // namespace
 
-void add_material(Description &description, const lancer_material &source) {
-  const std::string object = label("material", source.name, description.materials.size());
+Material read_material(const lancer_material &source, size_t number, Images images, Messages &messages) {
+  const std::string object = label("material", source.name, number);
   if (source.lobe_count > uint32_t(kMaxLobes))
     bad_argument(object + ": " + std::to_string(source.lobe_count) + " lobes > " + std::to_string(kMaxLobes));
   if (source.lobe_count && !source.lobes)
@@ -253,8 +253,7 @@ void add_material(Description &description, const lancer_material &source) {
   material.name = source.name ? source.name : "";
   material.index = source.material_index;
   material.flags = source.flags;
-  material.program = read_program(description, object, source.nodes, source.node_count);
-  Messages messages; // discarded if the material is rejected
+  material.program = read_program(images, object, source.nodes, source.node_count);
   const MaterialReader reader(object, material.program, messages);
   for (uint32_t i = 0; i < source.lobe_count; ++i)
     material.lobes.push_back(read_lobe(reader, source.lobes[i]));
@@ -271,8 +270,13 @@ void add_material(Description &description, const lancer_material &source) {
                                 reader.read_vector("portal direction", given.direction)});
   }
   make_schedules(material);
-  description.messages.add(messages);
-  description.materials.push_back(std::move(material));
+  return material;
+}
+
+void add_material(Description &description, const lancer_material &source) {
+  Messages messages; // discarded if the material is rejected
+  Material material = read_material(source, description.materials.size(), description.images, messages);
+  description.materials.emplace_back(std::move(material), std::move(messages));
 }
 
 } // namespace lancer

@@ -3,6 +3,7 @@
 #include "scene/fill.h"
 #include "scene/geometry.h"
 #include "scene/messages.h"
+#include "scene/names.h"
 
 #include <cmath>
 
@@ -117,16 +118,10 @@ void check_attributes(const std::string &object, const lancer_mesh &mesh) {
   }
 }
 
-MeshAttribute copy_attribute(Description &description, const lancer_attribute &source, const lancer_mesh &mesh) {
-  MeshAttribute attribute;
-  attribute.name = attribute_name(description, source.name);
-  attribute.domain = static_cast<Domain>(source.domain);
-  attribute.channels = source.channels;
-  const size_t count = attribute.domain == Domain::Vertex ? mesh.vertex_count
-                       : attribute.domain == Domain::Face ? mesh.triangle_count
-                                                          : size_t(mesh.triangle_count) * 3;
-  attribute.values.assign(source.values, source.values + count * source.channels);
-  return attribute;
+void copy_attribute(const lancer_attribute &source, Mesh &mesh) {
+  const MeshAttribute &attribute =
+      mesh.add_attribute(attribute_name(source.name), static_cast<Domain>(source.domain), source.channels);
+  mesh.attribute_values.insert(mesh.attribute_values.end(), source.values, source.values + mesh.count_of(attribute));
 }
 
 // Finds the bounds of all usable vertices.
@@ -146,8 +141,8 @@ void find_bounds(Mesh &mesh) {
 
 } // namespace
 
-void add_mesh(Description &description, const lancer_mesh &source) {
-  const std::string object = label("mesh", source.name, description.geometry.meshes.size());
+Mesh read_mesh(const lancer_mesh &source, size_t number, Messages &messages) {
+  const std::string object = label("mesh", source.name, number);
   // Reject invalid arrays.
   if (source.vertex_count && !source.positions)
     bad_argument(object + ": positions is NULL for " + std::to_string(source.vertex_count) + " vertices");
@@ -173,21 +168,25 @@ void add_mesh(Description &description, const lancer_mesh &source) {
   if (source.polygons)
     mesh.polygons.assign(source.polygons, source.polygons + source.triangle_count);
   for (uint32_t i = 0; i < source.attribute_count; ++i)
-    mesh.attributes.push_back(copy_attribute(description, source.attributes[i], source));
-  const std::vector<uint32_t> kept = kept_faces(object, mesh, description.messages);
+    copy_attribute(source.attributes[i], mesh);
+  const std::vector<uint32_t> kept = kept_faces(object, mesh, messages);
   if (kept.size() != mesh.triangles.size())
     keep_faces(mesh, kept);
   find_bounds(mesh);
 
   // Replace values that are not finite.
-  check_normals(object, mesh, description.messages);
-  size_t replaced = zero_where_not_finite(mesh.uvs) + zero_where_not_finite(mesh.colors);
-  for (MeshAttribute &attribute : mesh.attributes)
-    replaced += zero_where_not_finite(attribute.values);
+  check_normals(object, mesh, messages);
+  const size_t replaced =
+      zero_where_not_finite(mesh.uvs) + zero_where_not_finite(mesh.colors) + zero_where_not_finite(mesh.attribute_values);
   if (replaced)
-    description.messages.add(object,
-                             std::to_string(replaced) + " texture coordinates or colours that are not finite were set to 0");
-  description.geometry.meshes.push_back(std::move(mesh));
+    messages.add(object, std::to_string(replaced) + " texture coordinates or colours that are not finite were set to 0");
+  return mesh;
+}
+
+void add_mesh(Description &description, const lancer_mesh &source) {
+  Messages messages;
+  Mesh mesh = read_mesh(source, description.meshes.size(), messages);
+  description.meshes.emplace_back(std::move(mesh), std::move(messages));
 }
 
 } // namespace lancer

@@ -2,10 +2,12 @@
 #include "scene/description.h"
 #include "scene/fill.h"
 #include "scene/messages.h"
+#include "scene/names.h"
 #include "scene/surface.h"
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace lancer {
 
@@ -150,7 +152,7 @@ uint32_t flags_of(uint32_t kind) {
 
 class ProgramReader {
 public:
-  ProgramReader(Description &description, const std::string &owner) : description_(description), owner_(owner) {}
+  ProgramReader(Images images, const std::string &owner, Program &program) : images_(images), owner_(owner), program_(program) {}
 
   Node read(const lancer_node &given, uint32_t at) {
     where_ = owner_ + ": node " + std::to_string(at) + ": ";
@@ -216,8 +218,19 @@ private:
     }
   }
 
-  void read_pictures(const lancer_node &given, Node &node) const {
-    const size_t images = description_.images.size();
+  // Gives the node images of the program's own.
+  void refer_to(uint32_t first, uint32_t count, Node &node) {
+    const auto [known, fresh] = known_.try_emplace({first, count}, uint32_t(program_.images.size()));
+    for (uint32_t i = first; fresh && i < first + count; ++i) {
+      program_.images.push_back(*images_[i]);
+      program_.held.push_back(images_[i].object);
+    }
+    node.image = known->second;
+    node.image_count = count;
+  }
+
+  void read_pictures(const lancer_node &given, Node &node) {
+    const size_t images = images_.size();
     if (uint64_t(given.image) + given.image_count > images)
       bad_argument(where_ + "images " + std::to_string(given.image) + " + " + std::to_string(given.image_count) + " > " +
                    std::to_string(images) + " images");
@@ -227,36 +240,33 @@ private:
       bad_argument(where_ + "interpolation " + std::to_string(given.flags >> 4 & 0xf) + " is not one of 0, 1, 2");
     if (given.kind == LANCER_NODE_ENVIRONMENT && given.option == LANCER_ENVIRONMENT_CUBE && given.image_count != 6)
       bad_argument(where_ + std::to_string(given.image_count) + " images for the 6 sides of a cube");
-    node.image = given.image;
-    node.image_count = given.image_count;
+    refer_to(given.image, given.image_count, node);
     for (uint32_t i = 0; i < given.image_count; ++i)
-      node.mipmapped |= description_.images[given.image + i].levels > 1;
+      node.mipmapped |= images_[given.image + i]->levels > 1;
   }
 
-  const Image &table_of(const lancer_node &given, Node &node) const {
-    if (given.image >= description_.images.size())
-      bad_argument(where_ + "image " + std::to_string(given.image) + " >= " + std::to_string(description_.images.size()) +
-                   " images");
-    if (description_.images[given.image].blocks)
-      bad_argument(where_ + label("image", description_.images[given.image].name.c_str(), given.image) +
-                   " is a table, but its texels are blocks");
-    node.image = given.image;
-    node.image_count = 1;
-    return description_.images[given.image];
+  const Image &table_of(const lancer_node &given, Node &node) {
+    if (given.image >= images_.size())
+      bad_argument(where_ + "image " + std::to_string(given.image) + " >= " + std::to_string(images_.size()) + " images");
+    const Image &table = *images_[given.image];
+    if (table.in_blocks)
+      bad_argument(where_ + label("image", table.name.c_str(), given.image) + " is a table, but its texels are blocks");
+    refer_to(given.image, 1, node);
+    return table;
   }
 
-  void read_table(const lancer_node &given, Node &node) const {
+  void read_table(const lancer_node &given, Node &node) {
     const Image &table = table_of(given, node);
     if (table.kind != TexelKind::Float || table.height != 1 || table.width < 2)
       bad_argument(where_ + "image " + std::to_string(given.image) + " is not a row of at least two floating-point texels");
   }
 
-  void read_angles(const lancer_node &given, Node &node) const {
+  void read_angles(const lancer_node &given, Node &node) {
     const Image &table = table_of(given, node);
     const std::string image = where_ + "image " + std::to_string(given.image);
     if (table.kind != TexelKind::Float || table.channels != 1 || table.width < 5 || table.height < 5)
       bad_argument(image + " is not a table of at least 5 x 5 floating-point numbers");
-    const auto *texels = reinterpret_cast<const float *>(table.texels.get());
+    const auto *texels = reinterpret_cast<const float *>(table.texels);
     const auto check = [&](uint32_t count, size_t stride) {
       for (uint32_t i = 2; i + 1 < count; ++i)
         if (!std::isfinite(texels[i * stride]) || (i > 2 && !(texels[i * stride] >= texels[(i - 1) * stride])))
@@ -266,14 +276,14 @@ private:
     check(table.height, table.width);
   }
 
-  void read_sky(const lancer_node &given, Node &node) const {
+  void read_sky(const lancer_node &given, Node &node) {
     const Image &table = table_of(given, node);
     const bool fits = given.option > LANCER_SKY_HOSEK_WILKIE || (table.height == 1 && table.width == kSkyTexels);
     if (table.kind != TexelKind::Float || table.channels != 3 || !fits)
       bad_argument(where_ + "image " + std::to_string(given.image) + " is not a table of the sky");
   }
 
-  void read_voxels(const lancer_node &given, Node &node) const {
+  void read_voxels(const lancer_node &given, Node &node) {
     const Image &cube = table_of(given, node);
     if (cube.kind != TexelKind::Float || cube.channels != 4 || cube.height != uint64_t(cube.width) * cube.width)
       bad_argument(where_ + "image " + std::to_string(given.image) + " is not a cube of four floating-point numbers each");
@@ -285,13 +295,15 @@ private:
     const bool generated = (node.kind == LANCER_NODE_COORDINATE && node.option == LANCER_COORDINATE_GENERATED) ||
                            (node.kind == LANCER_NODE_TANGENT && node.option < 3);
     const bool undisplaced = node.kind == LANCER_NODE_BUMP && (node.flags & 2);
-    node.name = undisplaced ? kUndisplaced : attribute_name(description_, generated ? "generated" : name);
+    node.name = undisplaced ? kUndisplaced : attribute_name(generated ? "generated" : name);
     if (node.kind == LANCER_NODE_NORMAL_MAP || node.kind == LANCER_NODE_TANGENT)
-      node.tangent = attribute_name(description_, "tangent:" + name);
+      node.tangent = attribute_name("tangent:" + name);
   }
 
-  Description &description_;
+  Images images_;
   const std::string &owner_;
+  Program &program_;
+  std::map<std::pair<uint32_t, uint32_t>, uint32_t> known_; // numbers in the program by first and count
   std::string where_;
 };
 
@@ -321,22 +333,13 @@ Schedule height_schedule(const Program &program, uint32_t bump) {
 
 } // namespace
 
-uint32_t attribute_name(Description &description, const std::string &name) {
-  std::vector<std::string> &names = description.attribute_names;
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found != names.end())
-    return uint32_t(found - names.begin());
-  names.push_back(name);
-  return uint32_t(names.size() - 1);
-}
-
-Program read_program(Description &description, const std::string &owner, const lancer_node *nodes, uint32_t count) {
+Program read_program(Images images, const std::string &owner, const lancer_node *nodes, uint32_t count) {
   if (count > LANCER_MOST_NODES)
     bad_argument(owner + ": " + std::to_string(count) + " nodes > " + std::to_string(LANCER_MOST_NODES));
   if (count && !nodes)
     bad_argument(owner + ": nodes is NULL for " + std::to_string(count) + " nodes");
-  ProgramReader reader(description, owner);
   Program program;
+  ProgramReader reader(images, owner, program);
   program.nodes.reserve(count);
   for (uint32_t i = 0; i < count; ++i)
     program.nodes.push_back(reader.read(nodes[i], i));
@@ -347,8 +350,10 @@ Program read_program(Description &description, const std::string &owner, const l
     program.looks_around |= looks_around(node.kind);
     if (node.kind != LANCER_NODE_BUMP)
       continue;
-    program.nodes[i].heights = uint32_t(program.heights.size());
-    program.heights.push_back(height_schedule(program, i));
+    const Schedule heights = height_schedule(program, i);
+    program.nodes[i].heights = uint32_t(program.height_nodes.size());
+    program.nodes[i].height_count = uint32_t(heights.size());
+    program.height_nodes.insert(program.height_nodes.end(), heights.begin(), heights.end());
   }
   program.number_changes();
   return program;

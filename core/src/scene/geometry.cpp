@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numeric>
 
 namespace lancer {
@@ -50,7 +51,61 @@ bool has_area(const glm::vec3 &a, const glm::vec3 &b, const glm::vec3 &c) {
   return glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a)) != glm::dvec3(0.0);
 }
 
+bool Instance::same(const Instance &other) const {
+  const auto bits = [](const auto &a, const auto &b) { return std::memcmp(&a, &b, sizeof a) == 0; };
+  return bits(to_world, other.to_world) && bits(to_object, other.to_object) && bits(reach, other.reach) && kind == other.kind &&
+         shading == other.shading && mesh == other.mesh && first_slot == other.first_slot && slot_count == other.slot_count &&
+         object_index == other.object_index && hidden_from == other.hidden_from && holdout == other.holdout &&
+         bits(terminator, other.terminator) && number == other.number && bits(flat_axis, other.flat_axis);
+}
+
+MeshAttribute &Mesh::add_attribute(uint32_t attribute, Domain domain, uint32_t channels) {
+  return attributes.emplace_back(attribute, domain, channels, attribute_values.size());
+}
+
+size_t Mesh::count_of(const MeshAttribute &attribute) const {
+  const size_t rows = attribute.domain == Domain::Vertex ? positions.size()
+                      : attribute.domain == Domain::Face ? triangles.size()
+                                                         : 3 * triangles.size();
+  return rows * attribute.channels;
+}
+
+Mesh::operator MeshView() const {
+  return {.positions = positions,
+          .triangles = triangles,
+          .face_of = face_of,
+          .normals = normals,
+          .uvs = uvs,
+          .colors = colors,
+          .material_slots = material_slots,
+          .polygons = polygons,
+          .attributes = attributes,
+          .attribute_values = attribute_values,
+          .low = low,
+          .high = high,
+          .normal_domain = normal_domain,
+          .smooth_normals = {},
+          .centers = {}};
+}
+
+size_t Mesh::bytes() const {
+  return positions.size() * sizeof(glm::vec3) + triangles.size() * sizeof(glm::uvec3) +
+         (normals.size() + colors.size()) * sizeof(glm::vec3) + uvs.size() * sizeof(glm::vec2) +
+         material_slots.size() * sizeof(uint16_t) + (face_of.size() + polygons.size()) * sizeof(uint32_t) +
+         attribute_values.size() * sizeof(float);
+}
+
+std::vector<ObjectAttributeView> views_of(std::span<const ObjectAttribute> attributes) {
+  std::vector<ObjectAttributeView> views;
+  for (const ObjectAttribute &attribute : attributes)
+    views.push_back({attribute.name, attribute.values});
+  return views;
+}
+
 void keep_faces(Mesh &mesh, const std::vector<uint32_t> &kept) {
+  std::vector<size_t> counts;
+  for (const MeshAttribute &attribute : mesh.attributes)
+    counts.push_back(mesh.count_of(attribute));
   // Record the user's face numbers.
   if (mesh.face_of.empty()) {
     mesh.face_of.resize(mesh.triangles.size());
@@ -64,9 +119,16 @@ void keep_faces(Mesh &mesh, const std::vector<uint32_t> &kept) {
   retain(mesh.colors, 3, kept);
   retain(mesh.material_slots, 1, kept);
   retain(mesh.polygons, 1, kept);
-  for (MeshAttribute &attribute : mesh.attributes)
+  std::vector<float> values;
+  for (MeshAttribute &attribute : mesh.attributes) {
+    const auto from = mesh.attribute_values.begin() + ptrdiff_t(attribute.first);
+    std::vector<float> own(from, from + ptrdiff_t(counts[size_t(&attribute - mesh.attributes.data())]));
     if (attribute.domain != Domain::Vertex)
-      retain(attribute.values, attribute.channels * (attribute.domain == Domain::Corner ? 3u : 1u), kept);
+      retain(own, attribute.channels * (attribute.domain == Domain::Corner ? 3u : 1u), kept);
+    attribute.first = values.size();
+    values.insert(values.end(), own.begin(), own.end());
+  }
+  mesh.attribute_values = std::move(values);
 }
 
 } // namespace lancer

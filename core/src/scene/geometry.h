@@ -1,10 +1,13 @@
-// Meshes and their instances: in the user's units in a Description, in the normalised world in a Scene.
+// Meshes and their instances: in the user's units in a Description, in the normalised world in a Scene. Kernels read views,
+// which hold no memory of their own.
 #pragma once
 
 #include "scene/affine.h"
+#include "scene/once.h"
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,13 +17,13 @@ enum class ShapeKind : uint32_t { Mesh = 0, Sphere = 1, Plane = 2, Cylinder = 3,
 enum class Shading : uint32_t { AsMesh = 0, Flat = 1, Gouraud = 2, Phong = 3 };
 enum class NormalDomain : uint32_t { None = 0, Vertex = 1, Corner = 2 };
 
-// A named attribute, one to four numbers each; name is an index into Description::attribute_names.
+// A named attribute, one to four numbers each; name: of scene/names.h; first: of its numbers in Mesh::attribute_values.
 enum class Domain : uint32_t { Vertex = 0, Face = 1, Corner = 2 };
 struct MeshAttribute {
   uint32_t name = 0;
   Domain domain = Domain::Corner;
   uint32_t channels = 3;
-  std::vector<float> values;
+  size_t first = 0;
 };
 
 // The point at which flat shading computes a polygon's colour.
@@ -30,7 +33,32 @@ struct PolygonCenter {
   glm::vec3 normal{0.0f}; // object space, unit; 0 if the polygon's areas cancel
 };
 
-// A triangle mesh in object space. Only faces of finite, non-zero area are kept.
+// A triangle mesh in object space.
+struct MeshView {
+  std::span<const glm::vec3> positions;
+  std::span<const glm::uvec3> triangles;
+  std::span<const uint32_t> face_of;
+  std::span<const glm::vec3> normals;
+  std::span<const glm::vec2> uvs;
+  std::span<const glm::vec3> colors;
+  std::span<const uint16_t> material_slots;
+  std::span<const uint32_t> polygons;
+  std::span<const MeshAttribute> attributes;
+  std::span<const float> attribute_values;
+  glm::vec3 low{-1.0f}, high{1.0f};
+  NormalDomain normal_domain = NormalDomain::None;
+  std::span<const glm::vec3> smooth_normals; // per vertex; only if an instance with PHONG or GOURAUD uses a mesh without normals
+  std::span<const PolygonCenter> centers;    // by polygon; only if an instance with FLAT uses a mesh with polygons
+
+  glm::vec3 vertex(uint32_t triangle, int corner) const { return positions[triangles[triangle][corner]]; }
+};
+
+struct MeshBounds; // accel/mesh_bounds.h
+struct MeshCells;  // accel/mesh_bounds.h
+struct MeshBvh;    // accel/bvh/bvh_build.h
+struct KdTree;     // accel/kdtree/kdtree.h
+
+// The memory of a mesh. Only faces of finite, non-zero area are kept.
 struct Mesh {
   std::string name;
   std::vector<glm::vec3> positions;
@@ -42,13 +70,34 @@ struct Mesh {
   std::vector<uint16_t> material_slots; // empty (all 0), or per triangle
   std::vector<uint32_t> polygons;       // empty (each triangle is a polygon), or the polygon of each triangle
   std::vector<MeshAttribute> attributes;
-  glm::vec3 low{-1.0f}, high{1.0f}; // bounds of the given positions
+  std::vector<float> attribute_values; // of all attributes
+  glm::vec3 low{-1.0f}, high{1.0f};    // bounds of the given positions
   NormalDomain normal_domain = NormalDomain::None;
-  std::vector<glm::vec3> smooth_normals; // per vertex; only if an instance with PHONG or GOURAUD uses a mesh without normals
-  std::vector<PolygonCenter> centers;    // by polygon; only if an instance with FLAT uses a mesh with polygons
+
+  // Made when a scene first needs them.
+  Once<MeshBounds> bounds;
+  Once<MeshCells> cells;
+  Once<MeshBvh> tree;
+  Once<KdTree> kd_tree;
+  Once<std::vector<glm::vec3>> smooth_normals;
+  Once<std::vector<PolygonCenter>> centers;
 
   glm::vec3 vertex(uint32_t triangle, int corner) const { return positions[triangles[triangle][corner]]; }
+  // Adds an attribute whose numbers begin at the end of attribute_values; returns it.
+  MeshAttribute &add_attribute(uint32_t name, Domain domain, uint32_t channels);
+  // Returns how many numbers an attribute has.
+  size_t count_of(const MeshAttribute &attribute) const;
+  // Valid until the mesh changes.
+  operator MeshView() const;
+  size_t bytes() const;
 };
+// By the number of a mesh in a geometry: its memory, where data of the mesh are kept. Empty: nothing is kept.
+using MeshOwners = std::span<const Mesh *const>;
+inline const Mesh *owner_of(MeshOwners owners, size_t mesh) { return owners.empty() ? nullptr : owners[mesh]; }
+// Returns make(), or what the owner keeps of an earlier call. slot: of the owner, which may be null.
+template <class T, class Make> std::shared_ptr<const T> made_once(const Mesh *owner, Once<T> Mesh::*slot, const Make &make) {
+  return owner ? (owner->*slot).get(make) : std::make_shared<const T>(make());
+}
 
 // Input of bounds of rounding errors: the factors by which a placement can enlarge the largest coordinate of a point, and its
 // largest translation.
@@ -75,6 +124,8 @@ struct Instance {
 
   // Places the shape; the map must be invertible.
   void place(const Affine &map);
+  // Whether all members have the same bits.
+  bool same(const Instance &other) const;
   // Returns the doubles of to_world, to_object and reach in a row, as kernels read them.
   const double *placement() const { return &to_world.linear[0][0]; }
 };
@@ -90,15 +141,20 @@ struct ObjectInfo {
 
 // A named value of each instance, which OBJECT_INFO nodes read.
 struct ObjectAttribute {
-  uint32_t name = 0;             // index into Description::attribute_names
+  uint32_t name = 0;             // of scene/names.h
   std::vector<glm::vec4> values; // by Instance::number; missing entries are 0
 };
+struct ObjectAttributeView {
+  uint32_t name = 0;
+  std::span<const glm::vec4> values;
+};
+std::vector<ObjectAttributeView> views_of(std::span<const ObjectAttribute> attributes);
 
-struct Geometry {
-  std::vector<Mesh> meshes;
-  std::vector<Instance> instances;
-  std::vector<ObjectInfo> object_infos; // by Instance::number; missing entries have the default
-  std::vector<ObjectAttribute> object_attributes;
+struct GeometryView {
+  std::span<const MeshView> meshes;
+  std::span<const Instance> instances;
+  std::span<const ObjectInfo> object_infos; // by Instance::number; missing entries have the default
+  std::span<const ObjectAttributeView> object_attributes;
 };
 
 // Selection of the faces of a mesh that can be traced.

@@ -45,8 +45,7 @@ LANCER_LANE uint32_t blocks_along(uint32_t side) { return ((side - 1) >> kBlockS
 // Returns a side of a level. Each level has half the sides of the one before; those of the last fit one block.
 LANCER_LANE uint32_t level_side(uint32_t side, uint32_t level) { return side >> level > 1 ? side >> level : 1; }
 
-struct Image {
-  std::string name;
+struct ImageView {
   uint32_t width = 0, height = 0, channels = 4;
   TexelKind kind = TexelKind::U8;
   Transfer transfer = Transfer::Linear;
@@ -55,17 +54,16 @@ struct Image {
   uint32_t levels = 1; // more: a level for a ray, each with half the sides of the one before
   bool has_matrix = false;
   bool has_gaps = false;             // texels that are not finite
+  bool in_blocks = false;            // the order of LANCER_LAYOUT_BLOCKS; else [height][width][channels]
   glm::mat3 matrix{1.0f};            // decoded RGB to the working space
-  Texels texels;                     // [height][width][channels]; null: the texels are blocks
-  const std::byte *blocks = nullptr; // the caller's, in the order of LANCER_LAYOUT_BLOCKS
+  const std::byte *texels = nullptr;
 
-  LANCER_LANE const std::byte *data() const { return blocks ? blocks : texels.get(); }
   LANCER_LANE uint32_t channel_bytes() const { return kind == TexelKind::U8 ? 1 : kind == TexelKind::U16 ? 2 : 4; }
 
   LANCER_LANE size_t level_bytes(uint32_t level) const {
     const size_t texel = size_t(channels) * channel_bytes();
     const uint32_t across = level_side(width, level), up = level_side(height, level);
-    return blocks ? (size_t(blocks_along(across)) * blocks_along(up) << 2 * kBlockShift) * texel : size_t(across) * up * texel;
+    return in_blocks ? (size_t(blocks_along(across)) * blocks_along(up) << 2 * kBlockShift) * texel : size_t(across) * up * texel;
   }
   // Returns where the texels of a level begin; those of level `levels` would follow the last.
   LANCER_LANE size_t level_offset(uint32_t level) const {
@@ -75,6 +73,17 @@ struct Image {
     return offset;
   }
   LANCER_LANE size_t bytes() const { return level_offset(levels); }
+};
+
+// The memory of an image. Texels in blocks are the caller's.
+struct Image : ImageView {
+  std::string name;
+  Texels memory; // null: the texels are the caller's
+
+  void keep(Texels given) {
+    memory = std::move(given);
+    texels = memory.get();
+  }
 };
 
 } // namespace lancer

@@ -21,6 +21,7 @@ struct LightDescription {
   glm::vec3 emission{0.0f}; // POINT, SPOT: W/sr; SUN: W/m^2; AREA: radiance
   Program program;
   Parameter strength{glm::vec3(1.0f)}; // factor of emission
+  Schedule schedule;                   // of strength
   float radius = 0.0f;
   bool soft_falloff = true;
   float spot_angle = 0.0f, spot_blend = 0.0f;
@@ -39,15 +40,29 @@ struct LightDescription {
 };
 
 // The environment as described: one radiance, or nodes that compute the radiance of a direction.
-struct World {
-  Program program;
+struct WorldView {
+  ProgramView program;
   Parameter radiance;
-  Schedule schedule;                // of radiance
+  ScheduleView schedule;            // of radiance
   uint32_t hidden_from = 0;         // RayKind bits
   uint32_t map_resolution = 0;      // 0 = by its images
   std::optional<glm::vec3> ambient; // replaces the mean radiance for Ka
 
   bool varies() const { return radiance.varies(); }
+};
+
+// The memory of a world.
+struct World {
+  Program program;
+  Parameter radiance;
+  Schedule schedule;
+  uint32_t hidden_from = 0;
+  uint32_t map_resolution = 0;
+  std::optional<glm::vec3> ambient;
+
+  bool varies() const { return radiance.varies(); }
+  // Valid until the world changes.
+  operator WorldView() const { return {program, radiance, schedule, hidden_from, map_resolution, ambient}; }
 };
 
 } // namespace lancer

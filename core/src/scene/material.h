@@ -3,8 +3,10 @@
 
 #include "scene/lobe_inputs.h"
 #include "scene/node.h"
+#include "scene/once.h"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,7 +32,7 @@ struct LobeDescription {
   uint32_t option = 0;
   Parameter weight{glm::vec3(1.0f)}, color, roughness, ior{glm::vec3(1.5f)}, shininess, edge{glm::vec3(1.0f)}, anisotropy,
       rotation, normal, tangent, roughness_across, offset, film_thickness, film_ior{glm::vec3(1.33f)};
-  std::shared_ptr<const PrincipledDescription> principled;
+  std::optional<PrincipledDescription> principled;
 };
 
 // A portal of a lower mean weight is none, as in Cycles.
@@ -47,33 +49,56 @@ inline glm::vec3 counted_portal(const glm::vec3 &weight) {
   return weight.x + weight.y + weight.z >= 3.0f * kLeastPortal ? weight : glm::vec3(0.0f);
 }
 
-struct ReadyLobe;
+struct ReadyLobe;     // bsdf/material_lobes.h
+struct ReadyMaterial; // compile/scene.h
 
-struct Material {
-  std::string name;
-  std::vector<LobeDescription> lobes;
-  std::vector<Portal> portals;
-  Program program;
+// The parameters of a material, and facts that follow from its description.
+struct MaterialParameters {
   Parameter emission, transmittance, holdout, ambient, displacement, normal;
   uint32_t index = 0;
   uint32_t flags = 0; // MaterialFlag
 
-  std::shared_ptr<const ReadyLobe[]> ready; // by number of lobe; set by commit()
+  bool layered_emission = false; // a Principled lobe emits
+  bool has_sheets = false;       // a smooth sheet may let rays pass straight
+  bool bends_exits = false;      // light from below leaves about other normals than that of the surface
+  bool estimates = false;        // the value of a lobe is an estimate, by random numbers of its own
 
-  // The nodes that each query needs.
-  Schedule surface_nodes;       // lobes, emission, transmittance, holdout, ambient, normal
-  Schedule transmittance_nodes; // for shadow rays
-  Schedule emission_nodes;      // for light samples, including layered emission
-  Schedule displacement_nodes;
-
-  bool layered_emission = false;                       // a Principled lobe emits
-  bool has_sheets = false;                             // a smooth sheet may let rays pass straight
-  bool bends_exits = false;                            // light from below leaves about other normals than that of the surface
-  bool estimates = false;                              // the value of a lobe is an estimate, by random numbers of its own
-  bool fixed() const { return program.nodes.empty(); } // no node decides anything
   bool emits() const { return layered_emission || emission.varies() || emission.value != glm::vec3(0.0f); }
   bool displaces() const { return displacement.varies() || displacement.value != glm::vec3(0.0f); }
   bool is_transparent() const { return has_sheets || transmittance.varies() || transmittance.value != glm::vec3(0.0f); }
+};
+
+struct MaterialView : MaterialParameters {
+  std::span<const LobeDescription> lobes;
+  std::span<const Portal> portals;
+  ProgramView program;
+  const ReadyLobe *ready = nullptr; // by number of lobe
+
+  // The nodes that each query needs.
+  ScheduleView surface_nodes;       // lobes, emission, transmittance, holdout, ambient, normal
+  ScheduleView transmittance_nodes; // for shadow rays
+  ScheduleView emission_nodes;      // for light samples, including layered emission
+  ScheduleView displacement_nodes;
+
+  bool fixed() const { return program.nodes.empty(); } // no node decides anything
+};
+
+// The memory of a material.
+struct Material : MaterialParameters {
+  std::string name;
+  std::vector<LobeDescription> lobes;
+  std::vector<Portal> portals;
+  Program program;
+  Schedule surface_nodes, transmittance_nodes, emission_nodes, displacement_nodes;
+
+  Once<ReadyMaterial> ready; // made when a scene first needs it
+
+  bool fixed() const { return program.nodes.empty(); }
+  // Valid until the material changes.
+  operator MaterialView() const {
+    return {*this,         lobes, portals, program, nullptr, surface_nodes, transmittance_nodes, emission_nodes,
+            displacement_nodes};
+  }
 };
 
 // For a scalar parameter.

@@ -12,7 +12,7 @@ void mark(const Parameter &parameter, std::vector<bool> &needed) {
 
 } // namespace
 
-Schedule Program::schedule(std::span<const Parameter> parameters) const {
+Schedule ProgramView::schedule(std::span<const Parameter> parameters) const {
   std::vector<bool> needed(nodes.size());
   for (const Parameter &parameter : parameters)
     mark(parameter, needed);
@@ -29,7 +29,7 @@ Schedule Program::schedule(std::span<const Parameter> parameters) const {
     if (node.kind != NodeKind::Bump)
       continue;
     // A bump evaluates its own height nodes. Their inputs from earlier nodes belong to this schedule.
-    for (const uint16_t number : heights[node.heights]) {
+    for (const uint16_t number : heights_of(node)) {
       const Node &inner = nodes[number];
       for (int k = 0; k < 5; ++k)
         if (is_read_in_height(inner, k) && inner.inputs[k].node < int32_t(node.first))

@@ -13,18 +13,18 @@ namespace lancer {
 
 namespace {
 
-template <class Vector> Vector interpolate_corners(const std::vector<Vector> &corners, uint32_t triangle, const glm::dvec3 &b) {
+template <class Vector> Vector interpolate_corners(std::span<const Vector> corners, uint32_t triangle, const glm::dvec3 &b) {
   const size_t first = size_t(triangle) * 3;
   return float(b.x) * corners[first] + float(b.y) * corners[first + 1] + float(b.z) * corners[first + 2];
 }
 
 } // namespace
 
-bool corner_normals(const Mesh &mesh, Shading shading, uint32_t triangle, glm::vec3 (&n)[3]) {
+bool corner_normals(const MeshView &mesh, Shading shading, uint32_t triangle, glm::vec3 (&n)[3]) {
   if (shading == Shading::Flat)
     return false;
   const bool smooth = mesh.normal_domain == NormalDomain::None && shading != Shading::AsMesh;
-  const std::vector<glm::vec3> &normals = smooth ? mesh.smooth_normals : mesh.normals;
+  const std::span<const glm::vec3> normals = smooth ? mesh.smooth_normals : mesh.normals;
   if (normals.empty())
     return false;
   const bool corners = mesh.normal_domain == NormalDomain::Corner;
@@ -33,7 +33,7 @@ bool corner_normals(const Mesh &mesh, Shading shading, uint32_t triangle, glm::v
   return true;
 }
 
-glm::vec3 interpolated_normal(const Mesh &mesh, Shading shading, uint32_t triangle, const glm::dvec2 &bary) {
+glm::vec3 interpolated_normal(const MeshView &mesh, Shading shading, uint32_t triangle, const glm::dvec2 &bary) {
   glm::vec3 n[3];
   if (!corner_normals(mesh, shading, triangle, n))
     return glm::vec3(0.0f);
@@ -43,13 +43,13 @@ glm::vec3 interpolated_normal(const Mesh &mesh, Shading shading, uint32_t triang
 
 namespace {
 
-SurfaceLanes<float> surface_of(const Geometry &geometry, const Ray &ray, const Hit &hit) {
+SurfaceLanes<float> surface_of(const GeometryView &geometry, const Ray &ray, const Hit &hit) {
   const Instance &instance = geometry.instances[hit.instance];
   const double *const placement = instance.placement();
   const Placements<float> placed(&placement);
   if (instance.kind != ShapeKind::Mesh)
     return quadric_surface(placed, kinds_of(instance.kind), Vector3<double>(ray.o), Vector3<double>(ray.d), hit.t);
-  const Mesh &mesh = geometry.meshes[instance.mesh];
+  const MeshView &mesh = geometry.meshes[instance.mesh];
   Vector3<float> v[3], normals[3];
   glm::vec3 n[3] = {};
   const bool smooth = corner_normals(mesh, instance.shading, hit.primitive, n);
@@ -62,7 +62,7 @@ SurfaceLanes<float> surface_of(const Geometry &geometry, const Ray &ray, const H
 
 } // namespace
 
-uint32_t material_of(const Geometry &geometry, const std::vector<uint32_t> &slots, uint32_t instance, uint32_t primitive) {
+uint32_t material_of(const GeometryView &geometry, std::span<const uint32_t> slots, uint32_t instance, uint32_t primitive) {
   const Instance &placed = geometry.instances[instance];
   if (placed.slot_count == 0)
     return kNone;
@@ -72,7 +72,7 @@ uint32_t material_of(const Geometry &geometry, const std::vector<uint32_t> &slot
   return slots[placed.first_slot + slot];
 }
 
-Surface surface_at(const Geometry &geometry, const std::vector<uint32_t> &slots, const Ray &ray, const Hit &hit) {
+Surface surface_at(const GeometryView &geometry, std::span<const uint32_t> slots, const Ray &ray, const Hit &hit) {
   Surface surface;
   surface.instance = hit.instance;
   surface.primitive = hit.primitive;
@@ -87,14 +87,14 @@ Surface surface_at(const Geometry &geometry, const std::vector<uint32_t> &slots,
   return surface;
 }
 
-SurfaceAttributes attributes_at(const Geometry &geometry, const Surface &surface) {
+SurfaceAttributes attributes_at(const GeometryView &geometry, const Surface &surface) {
   SurfaceAttributes attributes;
   const Instance &instance = geometry.instances[surface.instance];
   if (instance.kind != ShapeKind::Mesh) {
     attributes.uv = nearest_float(quadric_uv(instance.kind, instance.to_object.point(surface.p)));
     return attributes;
   }
-  const Mesh &mesh = geometry.meshes[instance.mesh];
+  const MeshView &mesh = geometry.meshes[instance.mesh];
   const glm::dvec3 b(1.0 - surface.bary.x - surface.bary.y, surface.bary.x, surface.bary.y);
   attributes.uv = mesh.uvs.empty() ? glm::vec2(float(surface.bary.x), float(surface.bary.y))
                                    : interpolate_corners(mesh.uvs, surface.primitive, b);
@@ -131,7 +131,7 @@ glm::dvec2 quadric_uv(ShapeKind kind, const glm::dvec3 &p) {
 namespace {
 
 // Returns the index of a corner's first value.
-size_t offset_of(const Mesh &mesh, const MeshAttribute &attribute, uint32_t triangle, int corner) {
+size_t offset_of(const MeshView &mesh, const MeshAttribute &attribute, uint32_t triangle, int corner) {
   switch (attribute.domain) {
   case Domain::Vertex:
     return size_t(mesh.triangles[triangle][corner]) * attribute.channels;
@@ -143,8 +143,8 @@ size_t offset_of(const Mesh &mesh, const MeshAttribute &attribute, uint32_t tria
   return (size_t(triangle) * 3 + size_t(corner)) * attribute.channels;
 }
 
-glm::vec4 at_corner(const Mesh &mesh, const MeshAttribute &attribute, uint32_t triangle, int corner) {
-  const float *values = attribute.values.data() + offset_of(mesh, attribute, triangle, corner);
+glm::vec4 at_corner(const MeshView &mesh, const MeshAttribute &attribute, uint32_t triangle, int corner) {
+  const float *values = mesh.attribute_values.data() + attribute.first + offset_of(mesh, attribute, triangle, corner);
   if (attribute.channels == 1)
     return {values[0], values[0], values[0], 1.0f};
   return {values[0], values[1], attribute.channels > 2 ? values[2] : 0.0f, attribute.channels > 3 ? values[3] : 1.0f};
@@ -152,19 +152,19 @@ glm::vec4 at_corner(const Mesh &mesh, const MeshAttribute &attribute, uint32_t t
 
 } // namespace
 
-const MeshAttribute *find_attribute(const Mesh &mesh, uint32_t name) {
+const MeshAttribute *find_attribute(const MeshView &mesh, uint32_t name) {
   for (const MeshAttribute &attribute : mesh.attributes)
     if (attribute.name == name)
       return &attribute;
   return nullptr;
 }
 
-void corner_values(const Mesh &mesh, const MeshAttribute &attribute, uint32_t triangle, glm::vec4 (&values)[3]) {
+void corner_values(const MeshView &mesh, const MeshAttribute &attribute, uint32_t triangle, glm::vec4 (&values)[3]) {
   for (int corner = 0; corner < 3; ++corner)
     values[corner] = at_corner(mesh, attribute, triangle, corner);
 }
 
-glm::vec4 attribute_at(const Mesh &mesh, uint32_t name, uint32_t triangle, const glm::dvec2 &bary) {
+glm::vec4 attribute_at(const MeshView &mesh, uint32_t name, uint32_t triangle, const glm::dvec2 &bary) {
   const MeshAttribute *attribute = find_attribute(mesh, name);
   if (!attribute)
     return {0.0f, 0.0f, 0.0f, 1.0f};
@@ -174,7 +174,7 @@ glm::vec4 attribute_at(const Mesh &mesh, uint32_t name, uint32_t triangle, const
   return attribute->domain == Domain::Face ? at[0] : glm::vec4((1.0 - bary.x - bary.y) * a + bary.x * b + bary.y * c);
 }
 
-glm::vec2 uv_at(const Mesh &mesh, uint32_t name, uint32_t triangle, const glm::dvec2 &bary) {
+glm::vec2 uv_at(const MeshView &mesh, uint32_t name, uint32_t triangle, const glm::dvec2 &bary) {
   glm::vec2 corner[3];
   if (!corner_uvs(mesh, name, triangle, corner))
     return glm::vec2(0.0f);
@@ -182,7 +182,7 @@ glm::vec2 uv_at(const Mesh &mesh, uint32_t name, uint32_t triangle, const glm::d
   return {interpolate_uv(a.x, b.x, c.x, bary.x, bary.y), interpolate_uv(a.y, b.y, c.y, bary.x, bary.y)};
 }
 
-bool corner_uvs(const Mesh &mesh, const MeshAttribute *attribute, uint32_t name, uint32_t triangle, glm::vec2 (&uvs)[3]) {
+bool corner_uvs(const MeshView &mesh, const MeshAttribute *attribute, uint32_t name, uint32_t triangle, glm::vec2 (&uvs)[3]) {
   if (!attribute && (name != 0 || mesh.uvs.empty()))
     return false;
   for (int corner = 0; corner < 3; ++corner)
@@ -191,7 +191,7 @@ bool corner_uvs(const Mesh &mesh, const MeshAttribute *attribute, uint32_t name,
   return true;
 }
 
-bool corner_uvs(const Mesh &mesh, uint32_t name, uint32_t triangle, glm::vec2 (&uvs)[3]) {
+bool corner_uvs(const MeshView &mesh, uint32_t name, uint32_t triangle, glm::vec2 (&uvs)[3]) {
   return corner_uvs(mesh, find_attribute(mesh, name), name, triangle, uvs);
 }
 

@@ -19,26 +19,26 @@ struct Surface {
 };
 
 // Returns the surface at the hit of a ray. slots: material numbers of all instances.
-Surface surface_at(const Geometry &geometry, const std::vector<uint32_t> &slots, const Ray &ray, const Hit &hit);
+Surface surface_at(const GeometryView &geometry, std::span<const uint32_t> slots, const Ray &ray, const Hit &hit);
 
 // Attributes of the surface, computed separately because few callers need them.
 struct SurfaceAttributes {
   glm::vec2 uv{0.0f}; // texture coordinates; a mesh without them has barycentric weights, an exact surface its parametrisation
   glm::vec3 color{1.0f}; // vertex colour; white without one
 };
-SurfaceAttributes attributes_at(const Geometry &geometry, const Surface &surface);
+SurfaceAttributes attributes_at(const GeometryView &geometry, const Surface &surface);
 
 // Reads the normals at a triangle's corners in object space, of any length; returns false if the triangle is flat.
-bool corner_normals(const Mesh &mesh, Shading shading, uint32_t triangle, glm::vec3 (&n)[3]);
+bool corner_normals(const MeshView &mesh, Shading shading, uint32_t triangle, glm::vec3 (&n)[3]);
 // Returns the interpolated normal; 0 if the surface is flat. bary: see Surface::bary.
-glm::vec3 interpolated_normal(const Mesh &mesh, Shading shading, uint32_t triangle, const glm::dvec2 &bary);
+glm::vec3 interpolated_normal(const MeshView &mesh, Shading shading, uint32_t triangle, const glm::dvec2 &bary);
 
 // Returns a ray that leaves the surface towards d (need not be unit): it starts on the side of d and does not hit its own
 // primitive.
 Ray ray_from(const Surface &surface, const glm::dvec3 &d, double tmax);
 
 // Returns the material number of a primitive of an instance; kNone without slots.
-uint32_t material_of(const Geometry &geometry, const std::vector<uint32_t> &slots, uint32_t instance, uint32_t primitive);
+uint32_t material_of(const GeometryView &geometry, std::span<const uint32_t> slots, uint32_t instance, uint32_t primitive);
 
 // Interpolates between the corners of a triangle.
 
@@ -56,21 +56,21 @@ template <class D> LANCER_LANE auto interpolate_uv(const D &a, const D &b, const
 inline constexpr uint32_t kUndisplaced = UINT32_MAX;
 
 // Returns the attribute with this name number; null if the mesh has none.
-const MeshAttribute *find_attribute(const Mesh &mesh, uint32_t name);
+const MeshAttribute *find_attribute(const MeshView &mesh, uint32_t name);
 
 // Reads an attribute at a triangle's corners. One channel is copied to x, y and z; with two or three, z is 0 and w is 1 if
 // missing.
-void corner_values(const Mesh &mesh, const MeshAttribute &attribute, uint32_t triangle, glm::vec4 (&values)[3]);
+void corner_values(const MeshView &mesh, const MeshAttribute &attribute, uint32_t triangle, glm::vec4 (&values)[3]);
 
 // Returns an attribute within a triangle; 0 with w of 1 if the mesh has none of this name. bary: weights of corners 1 and 2.
-glm::vec4 attribute_at(const Mesh &mesh, uint32_t name, uint32_t triangle, const glm::dvec2 &bary);
+glm::vec4 attribute_at(const MeshView &mesh, uint32_t name, uint32_t triangle, const glm::dvec2 &bary);
 
 // Reads the texture coordinates at a triangle's corners: the mesh's own (name 0) or an attribute's. Returns false if there are
 // none.
-bool corner_uvs(const Mesh &mesh, uint32_t name, uint32_t triangle, glm::vec2 (&uvs)[3]);
-bool corner_uvs(const Mesh &mesh, const MeshAttribute *attribute, uint32_t name, uint32_t triangle, glm::vec2 (&uvs)[3]);
+bool corner_uvs(const MeshView &mesh, uint32_t name, uint32_t triangle, glm::vec2 (&uvs)[3]);
+bool corner_uvs(const MeshView &mesh, const MeshAttribute *attribute, uint32_t name, uint32_t triangle, glm::vec2 (&uvs)[3]);
 // Returns interpolated texture coordinates; 0 if there are none. bary: weights of vertices 1 and 2.
-glm::vec2 uv_at(const Mesh &mesh, uint32_t name, uint32_t triangle, const glm::dvec2 &bary);
+glm::vec2 uv_at(const MeshView &mesh, uint32_t name, uint32_t triangle, const glm::dvec2 &bary);
 
 // Fills a ray that leaves the surface of a hit from an origin off the surface. The ray is written in place.
 inline void write_ray(const Hit &hit, const glm::dvec3 &o, const glm::dvec3 &d, double tmax, uint32_t kinds, Ray &ray) {

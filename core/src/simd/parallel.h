@@ -12,10 +12,22 @@
 
 namespace lancer {
 
+// Numbers of parts that a build made instead of taking them from an earlier one.
+struct MadeCounts {
+  std::atomic<uint32_t> placements{0}, mesh_trees{0}, triangles{0}, changed_meshes{0}, materials{0}, emitters{0}, skies{0},
+      plane_searches{0};
+};
+
 struct BuildContext {
   uint32_t threads = 1;
   const std::atomic<bool> *cancel = nullptr; // polled; a cancelled build throws BuildCancelled
+  MadeCounts *made = nullptr;                // null: nothing is counted
 };
+
+inline void count_made(const BuildContext &context, std::atomic<uint32_t> MadeCounts::*which, uint32_t count = 1) {
+  if (context.made)
+    (context.made->*which).fetch_add(count, std::memory_order_relaxed);
+}
 struct BuildCancelled {};
 
 inline void poll_cancel(const BuildContext &context) {

@@ -8,6 +8,13 @@
 
 #define LANCER_LANE __attribute__((always_inline)) inline
 
+// A table that kernels read and one source file defines: in the memory of the processor that runs them.
+#if defined(__CUDA__)
+#define LANCER_TABLE extern __attribute__((device)) const
+#else
+#define LANCER_TABLE extern const
+#endif
+
 namespace lancer {
 
 // Conditions of width 1.

@@ -8,7 +8,7 @@ namespace {
 
 class BruteForce final : public Accelerator {
 public:
-  explicit BruteForce(const Geometry &g) : geometry(g), scene(place_scene(g)) {}
+  explicit BruteForce(const GeometryView &g) : geometry(g), scene(place_scene(g)) {}
 
   size_t bytes() const override { return scene.bytes(); }
   const char *instruction_set() const override { return "baseline"; }
@@ -41,19 +41,19 @@ private:
         continue;
       const RayAxes axes = axes_from(longest_axis(object_ray.d));
       const ShearedRay<double> sheared = shear_ray(object_ray, axes);
-      const Mesh &mesh = geometry.meshes[shape.mesh];
+      const MeshView &mesh = geometry.meshes[shape.mesh];
       for (uint32_t triangle = 0; triangle < mesh.triangles.size(); ++triangle)
         try_triangle(ray, axes, sheared, mesh, instance, triangle, counting, best);
     }
     return best;
   }
 
-  const Geometry &geometry;
+  const GeometryView geometry;
   PlacedScene scene;
 };
 
 } // namespace
 
-std::unique_ptr<Accelerator> build_brute_force(const Geometry &geometry) { return std::make_unique<BruteForce>(geometry); }
+std::unique_ptr<Accelerator> build_brute_force(const GeometryView &geometry) { return std::make_unique<BruteForce>(geometry); }
 
 } // namespace lancer

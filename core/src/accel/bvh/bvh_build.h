@@ -8,6 +8,7 @@
 #include "accel/placed_scene.h"
 #include "simd/huge_pages.h"
 
+#include <memory>
 #include <vector>
 
 namespace lancer {
@@ -82,11 +83,18 @@ struct MeshBvh {
   }
 };
 
-MeshBvh build_mesh_bvh(const Mesh &mesh, const PlacementFrame &frame, const BuildContext &context);
+MeshBvh build_mesh_bvh(const MeshView &mesh, const PlacementFrame &frame, const BuildContext &context);
+
+// The largest number of triangles of a mesh that may become part of the world's tree instead of having one of its own.
+inline constexpr size_t kMostUnfolded = 256;
+
+// Returns the tree of a mesh, made at the first call. owner: keeps it; may be null.
+std::shared_ptr<const MeshBvh> tree_of(const MeshView &mesh, const Mesh *owner, const PlacementFrame &frame,
+                                       const BuildContext &context);
 
 // Builds the tree of the world. unfolded: instances whose triangles are part of this tree; all other bounded instances are
 // leaves.
-MeshBvh build_world_bvh(const Geometry &geometry, const PlacedScene &placed, const std::vector<uint8_t> &unfolded,
+MeshBvh build_world_bvh(const GeometryView &geometry, const PlacedScene &placed, const std::vector<uint8_t> &unfolded,
                         const BuildContext &context);
 
 } // namespace lancer

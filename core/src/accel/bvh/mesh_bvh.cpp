@@ -63,7 +63,7 @@ MeshBvh gather_blocks(WideTree tree, uint32_t kind, bool owned, const MeshOf &me
 
   // Gather the corners of each block. They are scattered over the mesh: prefetch them some blocks ahead.
   const auto prefetch_block = [&](const LeafRef *leaf, uint32_t last, bool indices) {
-    const Mesh &mesh = mesh_of(leaf->owner);
+    const MeshView &mesh = mesh_of(leaf->owner);
     for (uint32_t lane = 0; lane <= last; ++lane) {
       const glm::uvec3 &triangle = mesh.triangles[leaf[lane].id];
       if (indices)
@@ -84,7 +84,7 @@ MeshBvh gather_blocks(WideTree tree, uint32_t kind, bool owned, const MeshOf &me
         prefetch_block(&tree.leaves[firsts[b + kAhead / 2] >> 2], firsts[b + kAhead / 2] & 3, false);
       TriangleBlock &block = bvh.blocks[b];
       const uint32_t first = firsts[b] >> 2, used = (firsts[b] & 3) + 1;
-      const Mesh &mesh = mesh_of(tree.leaves[first].owner);
+      const MeshView &mesh = mesh_of(tree.leaves[first].owner);
       if (owned)
         bvh.owners[b] = tree.leaves[first].owner;
       for (uint32_t lane = 0; lane < 4; ++lane) {
@@ -118,19 +118,28 @@ void add_triangles(HugeVector<BuildRef> &refs, size_t first, uint32_t count, uin
 
 } // namespace
 
-MeshBvh build_mesh_bvh(const Mesh &mesh, const PlacementFrame &frame, const BuildContext &context) {
+MeshBvh build_mesh_bvh(const MeshView &mesh, const PlacementFrame &frame, const BuildContext &context) {
   const uint32_t count = static_cast<uint32_t>(mesh.triangles.size());
   HugeVector<BuildRef> refs(count);
   add_triangles(
       refs, 0, count, 0, [&](uint32_t i) { return triangle_box(mesh, frame, i); }, context);
   WideTree tree = build_wide_tree(std::move(refs), kBvhLeafSize, context);
   return gather_blocks(
-      std::move(tree), kBvhTriangles, false, [&](uint32_t) -> const Mesh & { return mesh; }, nullptr, context);
+      std::move(tree), kBvhTriangles, false, [&](uint32_t) -> const MeshView & { return mesh; }, nullptr, context);
 }
 
-MeshBvh build_world_bvh(const Geometry &geometry, const PlacedScene &placed, const std::vector<uint8_t> &unfolded,
+std::shared_ptr<const MeshBvh> tree_of(const MeshView &mesh, const Mesh *owner, const PlacementFrame &frame,
+                                       const BuildContext &context) {
+  return made_once(owner, &Mesh::tree, [&] {
+    count_made(context, &MadeCounts::mesh_trees);
+    count_made(context, &MadeCounts::triangles, static_cast<uint32_t>(mesh.triangles.size()));
+    return build_mesh_bvh(mesh, frame, context);
+  });
+}
+
+MeshBvh build_world_bvh(const GeometryView &geometry, const PlacedScene &placed, const std::vector<uint8_t> &unfolded,
                         const BuildContext &context) {
-  const auto mesh_of = [&](uint32_t instance) -> const Mesh & { return geometry.meshes[geometry.instances[instance].mesh]; };
+  const auto mesh_of = [&](uint32_t instance) -> const MeshView & { return geometry.meshes[geometry.instances[instance].mesh]; };
   size_t count = 0;
   for (const uint32_t instance : placed.bounded)
     count += unfolded[instance] ? mesh_of(instance).triangles.size() : 1;
@@ -146,7 +155,7 @@ MeshBvh build_world_bvh(const Geometry &geometry, const PlacedScene &placed, con
       continue;
     }
     const Instance &instance = geometry.instances[number];
-    const Mesh &mesh = mesh_of(number);
+    const MeshView &mesh = mesh_of(number);
     const uint32_t triangles = static_cast<uint32_t>(mesh.triangles.size());
     const PlacedTriangleBoxes boxes(mesh, instance, placed.mesh_reach[instance.mesh], placed.world);
     add_triangles(refs, filled, triangles, number, boxes, context);

@@ -17,7 +17,7 @@ private:
 
 class CoplanarAccelerator final : public Accelerator {
 public:
-  CoplanarAccelerator(std::unique_ptr<Accelerator> a, PlaneRule r, size_t instances)
+  CoplanarAccelerator(std::shared_ptr<const Accelerator> a, PlaneRule r, size_t instances)
       : inner(std::move(a)), rule(std::move(r)), everything(instances, 1) {}
 
   const Accelerator &without_order() const override { return *inner; }
@@ -233,34 +233,35 @@ private:
     end.known = true;
   }
 
-  const std::unique_ptr<Accelerator> inner;
+  const std::shared_ptr<const Accelerator> inner;
   const PlaneRule rule;
   const std::vector<uint8_t> everything; // by instance: report its hits to the filter
 };
 
 } // namespace
 
-std::unique_ptr<Accelerator> build_accelerator(AcceleratorKind kind, const Geometry &geometry, PlaneRules rules,
-                                               const BuildContext &context) {
-  std::unique_ptr<Accelerator> plain = build_accelerator(kind, geometry, context);
-  const FaceRounding rounding(geometry, rules.origin);
+std::shared_ptr<const Accelerator> order_coplanar_faces(std::shared_ptr<const Accelerator> unordered,
+                                                        const GeometryView &geometry, PlaneRules rules,
+                                                        const BuildContext &context, MeshOwners owners) {
+  const FaceRounding rounding(geometry, rules.origin, owners);
   CoplanarFaces faces = find_coplanar_faces(geometry, rounding, rules, context);
   if (!faces.any())
-    return plain;
-  return std::make_unique<CoplanarAccelerator>(
-      std::move(plain), PlaneRule(geometry, rounding, std::move(faces), std::move(rules)), geometry.instances.size());
+    return unordered;
+  return std::make_shared<const CoplanarAccelerator>(
+      std::move(unordered), PlaneRule(geometry, rounding, std::move(faces), std::move(rules)), geometry.instances.size());
 }
 
-std::unique_ptr<Accelerator> build_accelerator(AcceleratorKind kind, const Geometry &geometry, const BuildContext &context) {
+std::unique_ptr<Accelerator> build_accelerator(AcceleratorKind kind, const GeometryView &geometry, const BuildContext &context,
+                                               MeshOwners owners) {
   switch (kind) {
   case AcceleratorKind::KdTree:
-    return build_kdtree_accelerator(geometry, context);
+    return build_kdtree_accelerator(geometry, context, owners);
   case AcceleratorKind::BruteForce:
     return build_brute_force(geometry);
   case AcceleratorKind::Bvh:
     break;
   }
-  return build_bvh(geometry, context);
+  return build_bvh(geometry, context, owners);
 }
 
 } // namespace lancer

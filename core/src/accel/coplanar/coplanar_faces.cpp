@@ -28,7 +28,7 @@ uint64_t number_of(const FaceCandidate &c) { return uint64_t{c.instance} << 32 |
 
 class Finder {
 public:
-  Finder(const Geometry &g, const FaceRounding &r, const PlaneRules &known, const BuildContext &c)
+  Finder(const GeometryView &g, const FaceRounding &r, const PlaneRules &known, const BuildContext &c)
       : geometry(g), rounding(r), rules(known), context(c), chosen(choose_faces(g, r, c)), candidates(chosen.faces) {}
 
   CoplanarFaces find() {
@@ -118,7 +118,7 @@ private:
     const Instance &instance = geometry.instances[one.instance];
     if (instance.kind != ShapeKind::Mesh || one.primitive == other.primitive)
       return true;
-    const Mesh &mesh = geometry.meshes[instance.mesh];
+    const MeshView &mesh = geometry.meshes[instance.mesh];
     const glm::uvec3 &a = mesh.triangles[one.primitive], &b = mesh.triangles[other.primitive];
     int shared = 0;
     for (int i = 0; i < 3; ++i)
@@ -251,7 +251,7 @@ private:
     }
   }
 
-  const Geometry &geometry;
+  const GeometryView geometry;
   const FaceRounding &rounding;
   const PlaneRules &rules;
   const BuildContext &context;
@@ -263,7 +263,7 @@ private:
 
 } // namespace
 
-CoplanarFaces find_coplanar_faces(const Geometry &geometry, const FaceRounding &rounding, const PlaneRules &rules,
+CoplanarFaces find_coplanar_faces(const GeometryView &geometry, const FaceRounding &rounding, const PlaneRules &rules,
                                   const BuildContext &context) {
   return Finder(geometry, rounding, rules, context).find();
 }

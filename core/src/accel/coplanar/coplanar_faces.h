@@ -18,12 +18,14 @@ struct PlaneRules {
   glm::dvec3 origin{0.0};                   // of the user's world, in which instances are placed in float
   std::vector<uint8_t> see_through_slots{}; // by slot: light passes its material, straight or refracted; empty: none
   std::vector<uint8_t> emitting_slots{};    // by slot: its material emits; empty: none does
+
+  bool operator==(const PlaneRules &) const = default;
 };
 
 // The priority of a face: of the coplanar faces at a place, a ray hits the face with the smallest order.
 using PlaneOrder = std::tuple<bool, bool, uint32_t, uint32_t, uint32_t>;
-PlaneOrder plane_order(const Geometry &geometry, const PlaneRules &rules, uint32_t instance, uint32_t primitive);
-bool face_emits(const Geometry &geometry, const PlaneRules &rules, uint32_t instance, uint32_t primitive);
+PlaneOrder plane_order(const GeometryView &geometry, const PlaneRules &rules, uint32_t instance, uint32_t primitive);
+bool face_emits(const GeometryView &geometry, const PlaneRules &rules, uint32_t instance, uint32_t primitive);
 
 // A triangle in the coordinates of the face that it covers. A place is inside if slope * at + offset >= 0 for all three sides.
 struct CoverPatch {
@@ -118,20 +120,21 @@ private:
 };
 
 // Returns the same faces for every accelerator; its cost is bounded.
-CoplanarFaces find_coplanar_faces(const Geometry &geometry, const FaceRounding &rounding, const PlaneRules &rules,
+CoplanarFaces find_coplanar_faces(const GeometryView &geometry, const FaceRounding &rounding, const PlaneRules &rules,
                                   const BuildContext &context);
 
-// Builds an accelerator that applies the priority order. If several faces cover one place of a plane within rounding, a ray
-// from either side hits the first in this order: opaque before others, emitting before others, then smaller instance,
-// smaller slot, smaller number. A ray that starts on a face hits no other face of its plane. A scene without such faces gets
-// the accelerator of the kind alone.
-std::unique_ptr<Accelerator> build_accelerator(AcceleratorKind kind, const Geometry &geometry, PlaneRules rules,
-                                               const BuildContext &context);
+// Returns an accelerator that applies the priority order to the hits of another; in a scene without such faces, the other. If
+// several faces cover one place of a plane within rounding, a ray from either side hits the first in this order: opaque before
+// others, emitting before others, then smaller instance, smaller slot, smaller number. A ray that starts on a face hits no other
+// face of its plane.
+std::shared_ptr<const Accelerator> order_coplanar_faces(std::shared_ptr<const Accelerator> unordered,
+                                                        const GeometryView &geometry, PlaneRules rules,
+                                                        const BuildContext &context, MeshOwners owners = {});
 
 // The priority order applied to rays: decides which of the coplanar faces at a place a ray hits or skips.
 class PlaneRule {
 public:
-  PlaneRule(const Geometry &geometry, const FaceRounding &rounding, CoplanarFaces faces, PlaneRules rules);
+  PlaneRule(const GeometryView &geometry, const FaceRounding &rounding, CoplanarFaces faces, PlaneRules rules);
 
   bool flagged(const Hit &hit) const { return faces.has(hit.instance, hit.primitive); }
   // Tests the face that a ray starts on.
@@ -171,7 +174,7 @@ private:
   double others(const glm::dvec3 &p) const;
   void find_light_planes();
 
-  const Geometry &geometry;
+  const GeometryView geometry;
   const FaceRounding rounding;
   const CoplanarFaces faces;
   const PlaneRules rules;

@@ -20,7 +20,7 @@ constexpr double kOffsetCells = 256.0;
 
 class Chooser {
 public:
-  Chooser(const Geometry &g, const FaceRounding &r, const BuildContext &c) : geometry(g), rounding(r), context(c) {}
+  Chooser(const GeometryView &g, const FaceRounding &r, const BuildContext &c) : geometry(g), rounding(r), context(c) {}
 
   FaceCandidates choose_all() {
     choose();
@@ -48,7 +48,7 @@ private:
   }
 
   // Chooses some of a mesh's triangles evenly, and all that are large in comparison with the mesh.
-  std::vector<uint32_t> choose_triangles(const Mesh &mesh, double extent, size_t most) const {
+  std::vector<uint32_t> choose_triangles(const MeshView &mesh, double extent, size_t most) const {
     const uint32_t count = static_cast<uint32_t>(mesh.triangles.size());
     std::vector<uint32_t> chosen;
     if (count <= most) {
@@ -117,7 +117,7 @@ private:
       found.step = std::max({size.x, size.y, size.z}) / kOffsetCells;
     const std::vector<uint8_t> met = find_neighbours(low, high);
     size_t faces = 0;
-    for (const Mesh &mesh : geometry.meshes)
+    for (const MeshView &mesh : geometry.meshes)
       faces += mesh.triangles.size();
     const size_t touching = std::max<size_t>(1, static_cast<size_t>(std::count(met.begin(), met.end(), 1)));
     const size_t budget = std::min(kCompared + faces / kOfMeshes + kOfEach * touching, kMost),
@@ -140,7 +140,7 @@ private:
           add_plane(i, all_low, all_high);
           continue;
         }
-        const Mesh &mesh = geometry.meshes[instance.mesh];
+        const MeshView &mesh = geometry.meshes[instance.mesh];
         if (!neighbours && mesh.triangles.size() > kCompared)
           continue;
         auto [at, fresh] = chosen.try_emplace(instance.mesh);
@@ -166,7 +166,7 @@ private:
     add_square(i, 0.0, 2.0 * std::max(half.x, half.y));
   }
 
-  const Geometry &geometry;
+  const GeometryView geometry;
   const FaceRounding &rounding;
   const BuildContext &context;
   FaceCandidates found;
@@ -174,7 +174,7 @@ private:
 
 } // namespace
 
-size_t faces_of(const Geometry &geometry, uint32_t instance) {
+size_t faces_of(const GeometryView &geometry, uint32_t instance) {
   const Instance &placed = geometry.instances[instance];
   if (placed.kind == ShapeKind::Mesh)
     return geometry.meshes[placed.mesh].triangles.size();
@@ -196,7 +196,7 @@ std::optional<FaceCandidate> face_candidate(const FaceRounding &rounding, uint32
   return c;
 }
 
-FaceCandidates choose_faces(const Geometry &geometry, const FaceRounding &rounding, const BuildContext &context) {
+FaceCandidates choose_faces(const GeometryView &geometry, const FaceRounding &rounding, const BuildContext &context) {
   return Chooser(geometry, rounding, context).choose_all();
 }
 

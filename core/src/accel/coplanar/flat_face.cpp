@@ -1,6 +1,7 @@
 #include "accel/coplanar/flat_face.h"
 
 #include "accel/hit_tests.h"
+#include "accel/mesh_bounds.h"
 
 #include <algorithm>
 #include <cmath>
@@ -42,13 +43,13 @@ FlatFace triangle_face(const glm::dvec3 corner[3]) {
   return {corner[0], n / length, length / longest};
 }
 
-void world_corners(const Geometry &geometry, uint32_t instance, uint32_t triangle, glm::dvec3 corner[3]) {
+void world_corners(const GeometryView &geometry, uint32_t instance, uint32_t triangle, glm::dvec3 corner[3]) {
   const Instance &placed = geometry.instances[instance];
   for (int i = 0; i < 3; ++i)
     corner[i] = placed.to_world.point(glm::dvec3(geometry.meshes[placed.mesh].vertex(triangle, i)));
 }
 
-FaceCoordinates coordinates_on_face(const Geometry &geometry, uint32_t instance, uint32_t primitive) {
+FaceCoordinates coordinates_on_face(const GeometryView &geometry, uint32_t instance, uint32_t primitive) {
   const Instance &placed = geometry.instances[instance];
   if (placed.kind != ShapeKind::Mesh) {
     const glm::dmat3 rows = glm::transpose(placed.to_object.linear);
@@ -61,7 +62,7 @@ FaceCoordinates coordinates_on_face(const Geometry &geometry, uint32_t instance,
   return {corner[0], glm::cross(b, n) / area, glm::cross(n, a) / area};
 }
 
-std::optional<FlatFace> face_met(const Geometry &geometry, const Ray &ray, const Hit &hit) {
+std::optional<FlatFace> face_met(const GeometryView &geometry, const Ray &ray, const Hit &hit) {
   const Instance &instance = geometry.instances[hit.instance];
   if (instance.kind != ShapeKind::Mesh)
     return quadric_face(instance, ray.o, ray.d, hit.t);
@@ -72,7 +73,7 @@ std::optional<FlatFace> face_met(const Geometry &geometry, const Ray &ray, const
   return face;
 }
 
-std::optional<FlatFace> face_left(const Geometry &geometry, const Ray &ray) {
+std::optional<FlatFace> face_left(const GeometryView &geometry, const Ray &ray) {
   const Instance &instance = geometry.instances[ray.skip_instance];
   if (instance.kind != ShapeKind::Mesh)
     return quadric_face(instance, ray.o, glm::dvec3(0.0), 0.0);
@@ -83,15 +84,11 @@ std::optional<FlatFace> face_left(const Geometry &geometry, const Ray &ray) {
   return face;
 }
 
-FaceRounding::FaceRounding(const Geometry &g, const glm::dvec3 &o) : geometry(g), origin(o) {
-  for (const Mesh &mesh : geometry.meshes) {
-    glm::vec3 lo(std::numeric_limits<float>::infinity()), hi = -lo;
-    for (const glm::vec3 &p : mesh.positions) {
-      lo = glm::min(lo, p);
-      hi = glm::max(hi, p);
-    }
-    low.emplace_back(mesh.positions.empty() ? glm::vec3(0.0f) : lo);
-    high.emplace_back(mesh.positions.empty() ? glm::vec3(0.0f) : hi);
+FaceRounding::FaceRounding(const GeometryView &g, const glm::dvec3 &o, MeshOwners owners) : geometry(g), origin(o) {
+  for (size_t i = 0; i < geometry.meshes.size(); ++i) {
+    const Extent vertices = bounds_of(geometry.meshes[i], owner_of(owners, i))->vertices;
+    low.push_back(vertices.empty() ? glm::dvec3(0.0) : vertices.lo);
+    high.push_back(vertices.empty() ? glm::dvec3(0.0) : vertices.hi);
   }
 }
 

@@ -21,7 +21,7 @@ struct FlatFace {
 
 // Makes the face of a triangle from its corners in the world.
 FlatFace triangle_face(const glm::dvec3 corner[3]);
-void world_corners(const Geometry &geometry, uint32_t instance, uint32_t triangle, glm::dvec3 corner[3]);
+void world_corners(const GeometryView &geometry, uint32_t instance, uint32_t triangle, glm::dvec3 corner[3]);
 
 // Coordinates of a world point on a face, as hits have them: weights of a triangle's corners, or x and y of an exact surface.
 struct FaceCoordinates {
@@ -29,19 +29,19 @@ struct FaceCoordinates {
 
   glm::dvec2 operator()(const glm::dvec3 &p) const { return {glm::dot(x, p - o), glm::dot(y, p - o)}; }
 };
-FaceCoordinates coordinates_on_face(const Geometry &geometry, uint32_t instance, uint32_t primitive);
+FaceCoordinates coordinates_on_face(const GeometryView &geometry, uint32_t instance, uint32_t primitive);
 
 // Returns the face of a hit with p at the hit; none if the surface is curved there.
-std::optional<FlatFace> face_met(const Geometry &geometry, const Ray &ray, const Hit &hit);
+std::optional<FlatFace> face_met(const GeometryView &geometry, const Ray &ray, const Hit &hit);
 // Returns the face that a ray starts on, with p near its origin.
-std::optional<FlatFace> face_left(const Geometry &geometry, const Ray &ray);
+std::optional<FlatFace> face_left(const GeometryView &geometry, const Ray &ray);
 
 // Rounding of surfaces. Corners are floats of their mesh, and placements are floats of the user's world that were computed in
 // float: both are known to a few units in the last place.
 class FaceRounding {
 public:
   // origin: of the user's world.
-  FaceRounding(const Geometry &geometry, const glm::dvec3 &origin);
+  FaceRounding(const GeometryView &geometry, const glm::dvec3 &origin, MeshOwners owners = {});
   // Returns the distance below which faces of two instances with the normal n, at p, are coplanar.
   double apart(uint32_t one, uint32_t other, const glm::dvec3 &n, const glm::dvec3 &p) const;
   // Returns the upper bound of one instance's share in apart(), for any normal.
@@ -58,7 +58,7 @@ private:
   glm::dvec3 within(uint32_t instance, const glm::dvec3 &p) const;
   glm::dvec3 moved(uint32_t instance) const;
 
-  const Geometry &geometry;
+  const GeometryView geometry;
   const glm::dvec3 origin;
   std::vector<glm::dvec3> low, high; // by mesh
 };
@@ -91,10 +91,10 @@ struct FaceCandidates {
 
 // Returns the same faces for every accelerator. The number of faces is bounded: a large mesh contributes some triangles and its
 // largest ones. Instances that touch others come first.
-FaceCandidates choose_faces(const Geometry &geometry, const FaceRounding &rounding, const BuildContext &context);
+FaceCandidates choose_faces(const GeometryView &geometry, const FaceRounding &rounding, const BuildContext &context);
 
 // Returns the number of faces of an instance; 0 if it has no flat ones.
-size_t faces_of(const Geometry &geometry, uint32_t instance);
+size_t faces_of(const GeometryView &geometry, uint32_t instance);
 
 inline bool boxes_meet(const glm::dvec3 &low, const glm::dvec3 &high, const glm::dvec3 &other_low,
                        const glm::dvec3 &other_high) {

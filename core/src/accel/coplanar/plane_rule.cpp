@@ -11,30 +11,30 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kEnd = 0x1p-8;
 constexpr size_t kLightPlanes = 16;
 
-uint32_t slot_of(const Geometry &geometry, uint32_t number, uint32_t primitive) {
+uint32_t slot_of(const GeometryView &geometry, uint32_t number, uint32_t primitive) {
   const Instance &instance = geometry.instances[number];
   if (instance.kind != ShapeKind::Mesh || instance.slot_count == 0 || geometry.meshes[instance.mesh].material_slots.empty())
     return 0;
   return std::min<uint32_t>(geometry.meshes[instance.mesh].material_slots[primitive], instance.slot_count - 1);
 }
 
-bool is(const Geometry &geometry, const std::vector<uint8_t> &slots, uint32_t number, uint32_t primitive) {
+bool is(const GeometryView &geometry, const std::vector<uint8_t> &slots, uint32_t number, uint32_t primitive) {
   const Instance &instance = geometry.instances[number];
   return instance.slot_count > 0 && !slots.empty() && slots[instance.first_slot + slot_of(geometry, number, primitive)] != 0;
 }
 
 } // namespace
 
-PlaneOrder plane_order(const Geometry &geometry, const PlaneRules &rules, uint32_t instance, uint32_t primitive) {
+PlaneOrder plane_order(const GeometryView &geometry, const PlaneRules &rules, uint32_t instance, uint32_t primitive) {
   return {is(geometry, rules.see_through_slots, instance, primitive), !face_emits(geometry, rules, instance, primitive),
           instance, slot_of(geometry, instance, primitive), primitive};
 }
 
-bool face_emits(const Geometry &geometry, const PlaneRules &rules, uint32_t instance, uint32_t primitive) {
+bool face_emits(const GeometryView &geometry, const PlaneRules &rules, uint32_t instance, uint32_t primitive) {
   return is(geometry, rules.emitting_slots, instance, primitive);
 }
 
-PlaneRule::PlaneRule(const Geometry &g, const FaceRounding &r, CoplanarFaces f, PlaneRules known)
+PlaneRule::PlaneRule(const GeometryView &g, const FaceRounding &r, CoplanarFaces f, PlaneRules known)
     : geometry(g), rounding(r), faces(std::move(f)), rules(std::move(known)) {
   for (uint32_t i = 0; i < geometry.instances.size(); ++i) {
     if (!faces.instances[i])

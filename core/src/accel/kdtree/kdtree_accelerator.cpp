@@ -16,22 +16,25 @@ constexpr float kInstanceCost = 8.0f;
 
 class KdTreeAccelerator final : public Accelerator {
 public:
-  KdTreeAccelerator(const Geometry &g, const BuildContext &context) : geometry(g), placed(place_scene(g)) {
+  KdTreeAccelerator(const GeometryView &g, const BuildContext &context, MeshOwners owners)
+      : geometry(g), placed(place_scene(g, owners)) {
     for (size_t m = 0; m < geometry.meshes.size(); ++m) {
-      const Mesh &mesh = geometry.meshes[m];
-      std::vector<Box> boxes;
-      boxes.reserve(mesh.triangles.size());
-      for (uint32_t i = 0; i < mesh.triangles.size(); ++i)
-        boxes.push_back(triangle_box(mesh, placed.mesh_frames[m], i));
-      meshes.push_back(build_kdtree(boxes, kTriangleCost, context));
+      const MeshView &mesh = geometry.meshes[m];
+      meshes.push_back(made_once(owner_of(owners, m), &Mesh::kd_tree, [&] {
+        std::vector<Box> boxes;
+        boxes.reserve(mesh.triangles.size());
+        for (uint32_t i = 0; i < mesh.triangles.size(); ++i)
+          boxes.push_back(triangle_box(mesh, placed.mesh_frames[m], i));
+        return build_kdtree(boxes, kTriangleCost, context);
+      }));
     }
     top = build_kdtree(placed.boxes, kInstanceCost, context);
   }
 
   size_t bytes() const override {
     size_t sum = placed.bytes() + top.bytes();
-    for (const KdTree &mesh : meshes)
-      sum += mesh.bytes();
+    for (const auto &mesh : meshes)
+      sum += mesh->bytes();
     return sum;
   }
   const char *instruction_set() const override { return "baseline"; }
@@ -76,9 +79,9 @@ private:
       return false;
     const RayAxes axes = axes_from(longest_axis(object_ray.d));
     const ShearedRay<double> sheared = shear_ray(object_ray, axes);
-    const Mesh &mesh = geometry.meshes[shape.mesh];
+    const MeshView &mesh = geometry.meshes[shape.mesh];
     const auto limit = [&] { return box_tau_above(object_ray, shape.frame.scale, std::min(ray.tmax, best.t)); };
-    meshes[shape.mesh].traverse(object_ray, shape.frame, box_tau_below(object_ray, shape.frame.scale, ray.tmin), limit,
+    meshes[shape.mesh]->traverse(object_ray, shape.frame, box_tau_below(object_ray, shape.frame.scale, ray.tmin), limit,
                                 [&](uint32_t triangle) {
                                   try_triangle(ray, axes, sheared, mesh, instance, triangle, counting, best);
                                   return any && best.valid();
@@ -86,16 +89,17 @@ private:
     return any && best.valid();
   }
 
-  const Geometry &geometry;
+  const GeometryView geometry;
   PlacedScene placed;
-  std::vector<KdTree> meshes;
+  std::vector<std::shared_ptr<const KdTree>> meshes;
   KdTree top;
 };
 
 } // namespace
 
-std::unique_ptr<Accelerator> build_kdtree_accelerator(const Geometry &geometry, const BuildContext &context) {
-  return std::make_unique<KdTreeAccelerator>(geometry, context);
+std::unique_ptr<Accelerator> build_kdtree_accelerator(const GeometryView &geometry, const BuildContext &context,
+                                                      MeshOwners owners) {
+  return std::make_unique<KdTreeAccelerator>(geometry, context, owners);
 }
 
 } // namespace lancer

@@ -10,7 +10,7 @@
 
 namespace lancer {
 
-void record_place(const Scene &scene, const Surface &surface, const Material &material, double t, SampleResult &result) {
+void record_place(const Scene &scene, const Surface &surface, const MaterialView &material, double t, SampleResult &result) {
   result.depth = nearest_float(t / scene.normalisation.scale);
   result.position = nearest_float(scene.normalisation.to_world(surface.p));
   result.object_index = float(scene.geometry.instances[surface.instance].object_index);

@@ -11,7 +11,7 @@ namespace lancer {
 // Passes of the surfaces that the camera sees.
 
 // Records the hit of the camera ray: depth, position and indices. t: of the camera ray.
-void record_place(const Scene &scene, const Surface &surface, const Material &material, double t, SampleResult &result);
+void record_place(const Scene &scene, const Surface &surface, const MaterialView &material, double t, SampleResult &result);
 // Resets the record to that of a ray that hits nothing.
 void forget_place(SampleResult &result);
 // Records the other passes of the first surface. normal: the mean of the lobes' normals.

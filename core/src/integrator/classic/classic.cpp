@@ -225,7 +225,7 @@ void ClassicIntegrator::push(const Branch &branch, Ray ray) {
 
 Surface surface_at_center(const Scene &scene, const Hit &hit) {
   const Instance &instance = scene.geometry.instances[hit.instance];
-  const Mesh &mesh = scene.geometry.meshes[instance.mesh];
+  const MeshView &mesh = scene.geometry.meshes[instance.mesh];
   Surface surface = surface_at(scene.geometry, scene.slots, Ray{}, center_hit(mesh, hit));
   if (mesh.centers.empty())
     return surface;

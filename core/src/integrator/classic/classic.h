@@ -128,8 +128,8 @@ private:
   bool run_part(std::span<const SampleAddress> addresses, std::span<SampleResult> results, std::vector<PathVertex> *trace);
   void generate(std::span<const SampleAddress> addresses, std::span<SampleResult> results);
   void shade(std::span<SampleResult> results);
-  void put_in_lane(size_t number, const Material &material, std::span<SampleResult> results);
-  void put_number(uint32_t lane, size_t number, const Material &material);
+  void put_in_lane(size_t number, const MaterialView &material, std::span<SampleResult> results);
+  void put_number(uint32_t lane, size_t number, const MaterialView &material);
   void shade_block(std::span<SampleResult> results);
   void cut_holdouts(std::span<SampleResult> results);
   void record(std::span<SampleResult> results);

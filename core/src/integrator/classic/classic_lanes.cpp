@@ -35,7 +35,7 @@ void ClassicIntegrator::shade(std::span<SampleResult> results) {
   own_light_.sort();
 }
 
-void ClassicIntegrator::put_in_lane(size_t number, const Material &material, std::span<SampleResult> results) {
+void ClassicIntegrator::put_in_lane(size_t number, const MaterialView &material, std::span<SampleResult> results) {
   const Hit &hit = hits_[number];
   const Ray &ray = rays_[number];
   const Instance &instance = scene_.geometry.instances[hit.instance];
@@ -56,7 +56,7 @@ void ClassicIntegrator::put_in_lane(size_t number, const Material &material, std
   put_number(surfaces_.add(ray, hit, material), number, material);
 }
 
-void ClassicIntegrator::put_number(uint32_t lane, size_t number, const Material &material) {
+void ClassicIntegrator::put_number(uint32_t lane, size_t number, const MaterialView &material) {
   number_[lane] = uint32_t(number);
   if (!material.estimates)
     return;

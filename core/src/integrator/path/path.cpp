@@ -130,7 +130,7 @@ void PathIntegrator::add_environment() {
 
 // Adds a hit to the block. Skips a hit that neither scatters, emits, passes light nor cuts a hole, where the batch fills the
 // picture alone. max_bounces counts the scatterings after the first.
-void PathIntegrator::put_in_lane(size_t number, const Material &material) {
+void PathIntegrator::put_in_lane(size_t number, const MaterialView &material) {
   const Path &path = queue_.paths[number];
   const Hit &hit = hits_[number];
   const bool ends = path.last || path.scatterings > settings_.max_bounces;

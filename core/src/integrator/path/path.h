@@ -28,8 +28,8 @@ public:
         camera_(camera, settings), film_(scene, camera, settings), hit_(scene, camera), met_(scene, camera), queues_(scene),
         textures_(scene), surface_(scene, camera, settings), light_(scene, &camera), occlusion_(scene, settings),
         shadow_(scene, camera, settings), last_bounces_(settings.max_bounces) {
-    if (std::ranges::any_of(scene.materials, [](const Material &material) { return material.program.looks_around; }))
-      surface_.look_by(node_rays_.emplace(scene));
+    if (std::ranges::any_of(scene.materials, [](const MaterialView &material) { return material.program.looks_around; }))
+      surface_.look_by(node_rays_.emplace(scene).functions());
     if (scene.features & kFeatureSubsurface) {
       surface_.walk_below();
       walk_.emplace(scene);
@@ -68,7 +68,7 @@ private:
   void shade_queued();
   void add_lamps();
   void add_environment();
-  void put_in_lane(size_t number, const Material &material);
+  void put_in_lane(size_t number, const MaterialView &material);
   void shade_block();
   void leave();
   void cut_holdouts();

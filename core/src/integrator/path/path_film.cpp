@@ -140,7 +140,7 @@ void PathFilm::record(const Path &path, const SurfaceStage &surfaces, uint32_t l
 }
 
 // t: of the ray, from the last surface that it passed.
-void PathFilm::record(const Path &path, const Surface &surface, const Material &material, const glm::vec3 &normal,
+void PathFilm::record(const Path &path, const Surface &surface, const MaterialView &material, const glm::vec3 &normal,
                       const glm::vec3 &opacity, double t) {
   SampleResult &result = results_[path.sample];
   // The first surface with enough opacity is recorded.

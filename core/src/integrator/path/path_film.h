@@ -105,7 +105,7 @@ private:
     return sums() > 1 ? indirect_[(sample + 1) * sums() - 1] : glm::vec3(0.0f);
   }
   void clamp(uint32_t sample);
-  void record(const Path &path, const Surface &surface, const Material &material, const glm::vec3 &normal,
+  void record(const Path &path, const Surface &surface, const MaterialView &material, const glm::vec3 &normal,
               const glm::vec3 &opacity, double t);
   void record(const Path &path, const SurfaceStage &surfaces, uint32_t lane);
   void trace(const Path &path, const Surface &surface, double t);

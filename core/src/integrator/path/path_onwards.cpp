@@ -112,7 +112,7 @@ bool PathIntegrator::has_portal(uint32_t lane) const {
 
 // Chooses among the portals of a surface and the way straight on, and weights the path; null is the way straight on.
 const Portal *PathIntegrator::choose_portal(uint32_t lane, Path &path) const {
-  const std::vector<Portal> &portals = surface_.material(lane).portals;
+  const std::span<const Portal> portals = surface_.material(lane).portals;
   const glm::vec3 straight = straight_weight(lane);
   float all = mean(straight);
   for (const Portal &portal : portals)

@@ -15,7 +15,7 @@ constexpr double kNoWeight = 0x1p-52;
 bool on_border(const Hit &hit) { return hit.u == 0.0 || hit.v == 0.0 || 1.0 - hit.u - hit.v <= kNoWeight; }
 
 // Returns the vertices between which a place on a triangle's border lies: two for an edge, one for a corner.
-std::array<uint32_t, 2> border_vertices(const Mesh &mesh, const Hit &hit) {
+std::array<uint32_t, 2> border_vertices(const MeshView &mesh, const Hit &hit) {
   const glm::uvec3 triangle = mesh.triangles[hit.primitive];
   const bool has[3] = {1.0 - hit.u - hit.v > kNoWeight, hit.u != 0.0, hit.v != 0.0};
   std::array<uint32_t, 2> vertices{kNone, kNone};
@@ -44,7 +44,7 @@ Crossing *Crossings::find(size_t ray, const Hit &hit) {
       return &crossings_[number];
     if (!on_border(hit) || !on_border(other))
       continue;
-    const Mesh &mesh = geometry_.meshes[instance.mesh];
+    const MeshView &mesh = geometry_.meshes[instance.mesh];
     if (border_vertices(mesh, hit) == border_vertices(mesh, other))
       return &crossings_[number];
   }

@@ -25,7 +25,7 @@ struct Crossing {
 
 class Crossings {
 public:
-  explicit Crossings(const Geometry &geometry) : geometry_(geometry) {}
+  explicit Crossings(const GeometryView &geometry) : geometry_(geometry) {}
 
   // Clears all crossings for the next batch of rays.
   void begin(size_t rays) {
@@ -52,7 +52,7 @@ private:
 
   std::span<const Crossing> sort(size_t ray, bool clear);
 
-  const Geometry &geometry_;
+  const GeometryView geometry_;
   std::vector<RayCrossings> rays_;
   std::vector<Crossing> crossings_;
   std::vector<Crossing> sorted_;

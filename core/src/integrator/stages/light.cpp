@@ -158,7 +158,7 @@ void LightStage::sample_faces(const Doubles (&p)[3]) {
     if (!emitter.faces())
       continue;
     const Instance &placed = scene_.geometry.instances[emitter.instance()];
-    const Mesh &mesh = scene_.geometry.meshes[placed.mesh];
+    const MeshView &mesh = scene_.geometry.meshes[placed.mesh];
     if (faces_.used == 0)
       std::fill_n(faces_.placement, kBlockLanes, placed.placement());
     faces_.used |= 1u << lane;

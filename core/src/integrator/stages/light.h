@@ -181,7 +181,7 @@ private:
     const uint32_t number = material_of(scene_.geometry, scene_.slots, emitter_of(lane).instance(), face_[lane]);
     if (number == kNone)
       return;
-    const Material &material = scene_.materials[number];
+    const MaterialView &material = scene_.materials[number];
     store_face(lane, emission_varies(material) ? face_emission(lane, path(lane)) : material.emission.value);
   }
   void store_face(uint32_t lane, const glm::vec3 &radiance);

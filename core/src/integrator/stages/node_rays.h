@@ -9,16 +9,22 @@
 
 namespace lancer {
 
-class SceneNodeRays final : public NodeRays {
+// Stays in its place: its functions refer to it.
+class SceneNodeRays {
 public:
-  explicit SceneNodeRays(const Scene &scene) : scene_(scene), own_(scene) {}
+  explicit SceneNodeRays(const Scene &scene);
+  SceneNodeRays(const SceneNodeRays &) = delete;
+  SceneNodeRays &operator=(const SceneNodeRays &) = delete;
 
-  uint32_t open(std::span<const Ray> rays, uint32_t instance) override;
-  Hit closest(const Ray &ray, uint32_t instance) override;
-  std::span<const Hit> all(const Ray &ray, uint32_t instance) override;
-  Surface surface(const Ray &ray, const Hit &hit) const override;
+  const NodeRays &functions() const { return functions_; }
 
 private:
+  uint32_t open(std::span<const Ray> rays, uint32_t instance);
+  Hit closest(const Ray &ray, uint32_t instance);
+  std::span<const Hit> all(const Ray &ray, uint32_t instance);
+  Surface surface(const Ray &ray, const Hit &hit) const;
+
+  NodeRays functions_;
   const Scene &scene_;
   OwnHits own_;
 };

@@ -9,7 +9,7 @@ namespace lancer {
 
 // A surface as seen from one direction.
 struct Shaded {
-  const Material *material = nullptr; // null: an instance without slots, black
+  const MaterialView *material = nullptr; // null: an instance without slots, black
   Bsdf<float> bsdf;
   glm::vec3 emission{0.0f};
   glm::vec3 transmittance{0.0f}; // share of light that passes straight through
@@ -33,12 +33,12 @@ public:
   // were none.
   bool is_there(uint32_t material, const Hit &hit);
   // Evaluates surfaces of this geometry instead of the scene's; it must outlive the shader.
-  void set_geometry(const Geometry &geometry) { nodes_.set_geometry(geometry); }
+  void set_geometry(const GeometryView &geometry) { nodes_.set_geometry(geometry); }
   // Returns the value of one node of a material at a surface.
   glm::vec4 node_value(const Surface &surface, uint32_t node, const glm::vec3 &wo);
 
 private:
-  glm::vec3 transmittance_by_lobes(const Ray &ray, const Hit &hit, const Material &material, const LightPath<float> &path);
+  glm::vec3 transmittance_by_lobes(const Ray &ray, const Hit &hit, const MaterialView &material, const LightPath<float> &path);
 
   const Scene &scene_;
   MaterialNodes nodes_;

@@ -23,16 +23,16 @@ public:
   }
 
   // Returns the material of an instance without slots: black.
-  static const Material &nothing() {
-    static const Material material;
+  static const MaterialView &nothing() {
+    static const MaterialView material;
     return material;
   }
   // A ray that has hit a surface.
   struct Queued {
     uint32_t number;
-    const Material *material;
+    const MaterialView *material;
   };
-  const Material &material(const Hit &hit) const {
+  const MaterialView &material(const Hit &hit) const {
     const uint32_t number = material_of(scene_.geometry, scene_.slots, hit.instance, hit.primitive);
     return number == kNone ? nothing() : scene_.materials[number];
   }

@@ -25,7 +25,7 @@ public:
       : HitFilter(scene.transparent_instances.data()), scene_(scene), shader_(scene, &camera),
         deepest_(settings.transparent_shadows), any_clear_(settings.all_features() || (scene.features & kFeatureTransparency)),
         asks_light_path_(std::ranges::any_of(scene.materials,
-                                             [](const Material &m) {
+                                             [](const MaterialView &m) {
                                                return (m.program.asks_light_path || m.program.mipmapped) &&
                                                       (m.transmittance.varies() || m.has_sheets);
                                              })),

@@ -34,7 +34,7 @@ SurfaceStage::SurfaceStage(const Scene &scene, const Camera &camera, const Integ
   nodes_.scene = scene.node_scene(&camera);
 }
 
-uint32_t SurfaceStage::add(const Ray &ray, const Hit &hit, const Material &material, bool ends) {
+uint32_t SurfaceStage::add(const Ray &ray, const Hit &hit, const MaterialView &material, bool ends) {
   const Instance &instance = scene_.geometry.instances[hit.instance];
   const uint32_t lane = count_++, bit = 1u << lane;
   ray_of_[lane] = &ray;
@@ -48,7 +48,7 @@ uint32_t SurfaceStage::add(const Ray &ray, const Hit &hit, const Material &mater
   hits_.used |= bit;
   hits_.placement[lane] = instance.placement();
   if (instance.kind == ShapeKind::Mesh) {
-    const Mesh &mesh = scene_.geometry.meshes[instance.mesh];
+    const MeshView &mesh = scene_.geometry.meshes[instance.mesh];
     const glm::uvec3 &triangle = mesh.triangles[hit.primitive];
     for (int corner = 0; corner < 3; ++corner)
       put(mesh.positions[triangle[corner]], hits_.corner[corner], lane);
@@ -106,13 +106,13 @@ void SurfaceStage::find() {
 }
 
 void SurfaceStage::run_nodes(std::span<const View> views) {
-  const Material &material = *materials_.material[0];
+  const MaterialView &material = *materials_.material[0];
   if (!material.surface_nodes.empty()) {
     place_nodes(material, views);
     node_kernel_.run(material.program, material.surface_nodes, nodes_, values_.data());
   }
   for (uint32_t lane = 0; lane < count_; ++lane) {
-    const Material &of = *materials_.material[lane];
+    const MaterialView &of = *materials_.material[lane];
     emission_[lane] = value(of.emission, lane);
     transmittance_[lane] = of.is_transparent() ? glm::max(value(of.transmittance, lane), 0.0f) : glm::vec3(0.0f);
     materials_.through[lane] = mean(transmittance_[lane]);
@@ -120,7 +120,7 @@ void SurfaceStage::run_nodes(std::span<const View> views) {
 }
 
 // Turns both normals to the viewer's side.
-void SurfaceStage::place_nodes(const Material &material, std::span<const View> views) {
+void SurfaceStage::place_nodes(const MaterialView &material, std::span<const View> views) {
   const SurfaceBlock &at = surfaces_;
   nodes_.used = (1u << count_) - 1u;
   nodes_.backfacing = 0;

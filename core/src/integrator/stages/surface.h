@@ -37,7 +37,7 @@ struct alignas(64) SurfaceBlock {
 
 // The materials at the surfaces, and what their nodes say.
 struct alignas(64) MaterialBlock {
-  const Material *material[kBlockLanes];           // all of one class
+  const MaterialView *material[kBlockLanes];           // all of one class
   Floats transmittance[3];                         // by describe()
   Floats through;                                  // by add() and ask_nodes(): the mean of the transmittance
   const float (*values)[4][kBlockLanes] = nullptr; // of nodes, four floats for every lane, by ask_nodes()
@@ -102,7 +102,7 @@ public:
   bool full() const { return count_ == kBlockLanes; }
   // Adds a hit to the next lane and returns the lane. All hits of a block have materials of one class; ray and hit must stay in
   // place until clear(). ends: the surface scatters no light; the path ends here or passes straight on.
-  uint32_t add(const Ray &ray, const Hit &hit, const Material &material, bool ends = false);
+  uint32_t add(const Ray &ray, const Hit &hit, const MaterialView &material, bool ends = false);
   // Replaces the surface of a lane, seen along a view direction of any length.
   void replace(uint32_t lane, const Surface &surface, const glm::dvec3 &view);
   // Moves a lane to another place of its triangle.
@@ -123,12 +123,12 @@ public:
   // Sets the key of the random numbers by which the lobes of a lane estimate their values, where the material has any such.
   void set_key(uint32_t lane, uint32_t key) { materials_.key[lane] = key; }
   // Lets nodes look around by these rays, which must outlive the stage.
-  void look_by(NodeRays &rays) { looking_.rays = &rays; }
+  void look_by(const NodeRays &rays) { looking_.rays = &rays; }
   // Computes the surfaces of all lanes.
   void find();
   // Evaluates the nodes of the material, if it has any. view_of(lane): returns the View of a lane.
   template <class ViewOf> void ask_nodes(ViewOf &&view_of) {
-    const Material &material = *materials_.material[0];
+    const MaterialView &material = *materials_.material[0];
     if (material.fixed() || (materials_.leaving && !material.bends_exits))
       return;
     View views[kBlockLanes];
@@ -160,7 +160,7 @@ public:
   const SurfaceBlock &surfaces() const { return surfaces_; }
   const LobeBlock &lobes() const { return lobes_; }
   const MeanBlock &means() const { return means_; }
-  const Material &material(uint32_t lane) const { return *materials_.material[lane]; }
+  const MaterialView &material(uint32_t lane) const { return *materials_.material[lane]; }
   const Ray &ray(uint32_t lane) const { return *ray_of_[lane]; }
   const Hit &hit(uint32_t lane) const { return *hit_of_[lane]; }
   const Instance &instance(uint32_t lane) const { return scene_.geometry.instances[hit(lane).instance]; }
@@ -187,7 +187,7 @@ public:
 
 private:
   void run_nodes(std::span<const View> views);
-  void place_nodes(const Material &material, std::span<const View> views);
+  void place_nodes(const MaterialView &material, std::span<const View> views);
   void set_transmittance(uint32_t lane, const glm::vec3 &transmittance);
   float holdout(uint32_t lane) const;
 

@@ -13,7 +13,7 @@ struct SmoothTriangle {
 };
 
 // Returns false where the triangle has no smooth normals.
-bool read_triangle(const Mesh &mesh, const Instance &instance, uint32_t triangle, SmoothTriangle &smooth) {
+bool read_triangle(const MeshView &mesh, const Instance &instance, uint32_t triangle, SmoothTriangle &smooth) {
   glm::vec3 n[3];
   if (!corner_normals(mesh, instance.shading, triangle, n))
     return false;
@@ -48,7 +48,7 @@ double height(const SmoothTriangle &t, const glm::dvec3 &b, const glm::dvec3 &p,
 
 } // namespace
 
-glm::dvec3 terminator_offset(const Geometry &geometry, const Surface &surface, const glm::vec3 &n, const glm::vec3 &ng,
+glm::dvec3 terminator_offset(const GeometryView &geometry, const Surface &surface, const glm::vec3 &n, const glm::vec3 &ng,
                              const glm::vec3 &wi) {
   const Instance &instance = geometry.instances[surface.instance];
   if (instance.kind != ShapeKind::Mesh)
@@ -64,7 +64,7 @@ glm::dvec3 terminator_offset(const Geometry &geometry, const Surface &surface, c
   return double(amount) * instance.to_world.vector(lift * height(triangle, b, p, outwards));
 }
 
-Ray shadow_ray(const Geometry &geometry, const Surface &surface, const glm::vec3 &ns, const glm::vec3 &ng,
+Ray shadow_ray(const GeometryView &geometry, const Surface &surface, const glm::vec3 &ns, const glm::vec3 &ng,
                const LightSample &sample) {
   const bool far = std::isinf(sample.distance);
   const glm::vec3 wi(sample.wi);

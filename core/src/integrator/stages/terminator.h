@@ -19,11 +19,11 @@ template <class F> LANCER_LANE F terminator_amount(F limit, const Vec3<F> &n, co
 
 // Returns the offset of the start of a ray towards the unit direction wi, in the normalised world; n: the shading normal, ng:
 // the geometric one, both on the viewer's side. The offset is 0 if the mesh is not smooth or if wi is far from grazing.
-glm::dvec3 terminator_offset(const Geometry &geometry, const Surface &surface, const glm::vec3 &n, const glm::vec3 &ng,
+glm::dvec3 terminator_offset(const GeometryView &geometry, const Surface &surface, const glm::vec3 &n, const glm::vec3 &ng,
                              const glm::vec3 &wi);
 
 // Returns a shadow ray to a light's sample; ns, ng: the shading and the geometric normal, both on the viewer's side.
-Ray shadow_ray(const Geometry &geometry, const Surface &surface, const glm::vec3 &ns, const glm::vec3 &ng,
+Ray shadow_ray(const GeometryView &geometry, const Surface &surface, const glm::vec3 &ns, const glm::vec3 &ng,
                const LightSample &sample);
 
 } // namespace lancer

@@ -15,22 +15,22 @@ constexpr size_t kLarge = size_t(4) << 20;
 } // namespace
 
 TexturePrefetch::TexturePrefetch(const Scene &scene) : scene_(scene) {
-  for (const Material &material : scene.materials) {
-    pictures_.push_back(find(scene, material));
+  for (const MaterialView &material : scene.materials) {
+    pictures_.push_back(find(material));
     any_ = any_ || pictures_.back().image;
   }
 }
 
-TexturePrefetch::Source TexturePrefetch::find(const Scene &scene, const Material &material) {
-  const std::vector<Node> &nodes = material.program.nodes;
+TexturePrefetch::Source TexturePrefetch::find(const MaterialView &material) {
+  const std::span<const Node> nodes = material.program.nodes;
   for (const Node &node : nodes) {
     if (node.kind != NodeKind::Image || node.option != ImageProjection::Flat || node.image_count != 1 ||
         !node.inputs[0].varies())
       continue;
     const Node &source = nodes[size_t(node.inputs[0].node)];
-    const Image &image = scene.images[node.image];
+    const ImageView &image = material.program.images[node.image];
     // A prefetch brings no page of a file into memory.
-    if (source.kind == NodeKind::Coordinate && source.option == Coordinate::Uv && image.bytes() >= kLarge && !image.blocks &&
+    if (source.kind == NodeKind::Coordinate && source.option == Coordinate::Uv && image.bytes() >= kLarge && !image.in_blocks &&
         image.levels == 1)
       return {&image, source.name, static_cast<Extension>(node.flags & 0xf)};
   }

@@ -11,7 +11,7 @@ namespace lancer {
 
 // The look-up that the shading of a hit will make; image is null if no look-up can be predicted.
 struct ComingLookup {
-  const Image *image = nullptr;
+  const ImageView *image = nullptr;
   glm::vec2 uv{0.0f};
   Extension extension = Extension::Repeat;
 };
@@ -30,12 +30,12 @@ public:
 
 private:
   struct Source {
-    const Image *image = nullptr;
+    const ImageView *image = nullptr;
     uint32_t uv_map = 0; // number of its name
     Extension extension = Extension::Repeat;
   };
 
-  static Source find(const Scene &scene, const Material &material);
+  static Source find(const MaterialView &material);
   void ask(const Hit &hit) const;
 
   const Scene &scene_;

@@ -1,0 +1,14 @@
+// Work of later commits, done ahead of them by a thread of the library.
+#pragma once
+
+#include "scene/geometry.h"
+
+#include <memory>
+
+namespace lancer {
+
+// Queues the mesh's tree. The thread ends when nothing is left; its priority is lower than that of the calling thread. A mesh that
+// nobody has when its turn comes is left out.
+void prepare(const std::shared_ptr<const Mesh> &mesh);
+
+} // namespace lancer
