@@ -32,6 +32,7 @@ BUILDERS = {
     "procedural_floor": "graphs.build_procedural_floor",
     "lab": "lab.build",
     "million": "heavy.build_million",
+    "head": "heavy.build_head",
     "instances": "heavy.build_instances",
     "terrain": "heavy.build_terrain",
     "crowd": "heavy.build_crowd",

@@ -10,14 +10,19 @@ from mathutils import Euler, Matrix
 from . import parts
 
 
-def build_million(scene):
+def build_million(scene, subdivisions=5):
     """One mesh of 1 007 616 triangles: the monkey's 500 faces (468 quads, 32 triangles), subdivided five times."""
     parts.set_size(scene, 320, 180, 16)
     grey = parts.principled("Grey", base_color=(0.6, 0.6, 0.6), roughness=0.4, ior=1.5)
-    parts.place(scene, "Monkey", parts.monkey_mesh("Monkey", 5), grey)
+    parts.place(scene, "Monkey", parts.monkey_mesh("Monkey", subdivisions), grey)
     parts.add_light(scene, "Area", "AREA", 300.0, (3, -4, 4), size=2.0)
     parts.set_world(scene, (0.4, 0.5, 0.6), 0.4)
     parts.add_camera(scene, (0.6, -4, 0.8), (0, 0, 0))
+
+
+def build_head(scene):
+    """One mesh of 251 904 triangles."""
+    build_million(scene, 4)
 
 
 def build_instances(scene, count=20_000):

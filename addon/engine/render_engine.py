@@ -227,17 +227,24 @@ class LancerRenderEngine(bpy.types.RenderEngine):
                 self.end_result(result, cancel=True)
                 raise LancerError(f"Blender expects {result.resolution_x} x {result.resolution_y} pixels, not {expected}")
 
-            def show():
-                passes.fill(result.layers[0], session.read, wanted)
+            look = None if self.is_animation else first_look.FirstLook(session, self._is_over)
+            if look and look.coarse is not None:
+                passes.fill(result.layers[0], lambda _: look.coarse, passes.COMBINED)
                 self.update_result(result)
 
-            if not self.is_animation:
-                self._show_coarse(result, session)
+            def fill():
+                read = look.read if look and schedule.samples == 0 else session.read
+                passes.fill(result.layers[0], read, wanted)
+
+            def show():
+                fill()
+                self.update_result(result)
+
             denoiser = denoising and Denoising(session, denoising, self._is_over, lambda text: self.update_stats("", text))
             schedule = Schedule(session, self._picture.started, denoiser.bound if denoiser and denoising.of_target else None)
             try:
                 self._run(schedule, show)
-                passes.fill(result.layers[0], session.read, wanted)
+                fill()
                 denoised = None
                 if denoiser and not self._is_over():
                     self.update_result(result)
@@ -250,13 +257,6 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             finally:
                 # Keep the unfinished picture, after Esc too.
                 self.end_result(result)
-
-    def _show_coarse(self, result, session):
-        """Show a picture of large pixels, so that something is there at once."""
-        picture = first_look.coarse_picture(session, self._is_over)
-        if picture is not None:
-            passes.fill(result.layers[0], lambda _: picture, passes.COMBINED)
-            self.update_result(result)
 
     def _run(self, schedule, show):
         """Render range by range and show the picture at intervals, until the schedule ends or the user cancels."""

@@ -26,6 +26,7 @@ class Ahead:
             part.record = None
         self._parts, self._made = [], []
 
+
 _committed = weakref.WeakSet()
 
 

@@ -27,7 +27,8 @@ constexpr uint32_t kMostCalls = 40, kMostScenes = 2, kMostSessions = 3, kMostRan
 // with every compiler.
 class Program {
 public:
-  Program(const uint8_t *data, size_t size) : bytes_(data, size), records_(bytes_), parts_(bytes_, records_, sessions_), objects_(bytes_, records_, scenes_) {}
+  Program(const uint8_t *data, size_t size)
+      : bytes_(data, size), records_(bytes_), parts_(bytes_, records_, sessions_), objects_(bytes_, records_, scenes_) {}
 
   void run() {
     for (uint32_t i = 0; i < kMostCalls && bytes_.any(); ++i)

@@ -918,11 +918,11 @@ LANCER_API lancer_status lancer_object_create_material(const lancer_material *ma
                                                        const lancer_object *images, lancer_object *object);
 LANCER_API lancer_status lancer_object_create_light(const lancer_light *light, uint32_t number, uint32_t image_count,
                                                     const lancer_object *images, lancer_object *object);
-LANCER_API lancer_status lancer_object_create_world(const lancer_world *world, uint32_t image_count, const lancer_object *images,
-                                                    lancer_object *object);
+LANCER_API lancer_status lancer_object_create_world(const lancer_world *world, uint32_t image_count,
+                                                    const lancer_object *images, lancer_object *object);
 LANCER_API lancer_status lancer_object_destroy(lancer_object object);
-/* Begins, in a thread of the library, with the work that a commit would do for this object alone: the tree of a mesh. So it goes
- * on while the caller still reads others. It is left out if nobody has the object any more when its turn comes. */
+/* Begins, in a thread of the library, with the work that a commit would do for this object alone: the tree of a mesh. So it
+ * goes on while the caller still reads others. It is left out if nobody has the object any more when its turn comes. */
 LANCER_API lancer_status lancer_object_prepare(lancer_object object);
 
 /* Creates a scene that begins with all that a committed scene has, for changes. Its commit makes only the parts that differ and

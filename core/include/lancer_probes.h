@@ -25,14 +25,14 @@ typedef struct lancer_hit {
 
 /* The parts that a scene's commit made; it took all others from the objects or from the scene before. */
 typedef struct lancer_made {
-  uint32_t placements;      /* 1: instances were placed, and the tree of the world was built */
-  uint32_t mesh_trees;      /* trees of meshes */
-  uint32_t triangles;       /* in all these trees */
-  uint32_t changed_meshes;  /* meshes that were displaced or flattened */
-  uint32_t materials;       /* materials that were made ready */
-  uint32_t emitters;        /* trees of emitting faces */
-  uint32_t skies;           /* 1: the world's sampling maps were made */
-  uint32_t plane_searches;  /* 1: coplanar faces were searched */
+  uint32_t placements;     /* 1: instances were placed, and the tree of the world was built */
+  uint32_t mesh_trees;     /* trees of meshes */
+  uint32_t triangles;      /* in all these trees */
+  uint32_t changed_meshes; /* meshes that were displaced or flattened */
+  uint32_t materials;      /* materials that were made ready */
+  uint32_t emitters;       /* trees of emitting faces */
+  uint32_t skies;          /* 1: the world's sampling maps were made */
+  uint32_t plane_searches; /* 1: coplanar faces were searched */
 } lancer_made;
 LANCER_API lancer_status lancer_probe_made(lancer_scene scene, lancer_made *made);
 

@@ -38,13 +38,15 @@ const char *lancer_last_error(void) { return last_error; }
 
 uint32_t lancer_sizeof(uint32_t which) {
   static constexpr size_t sizes[LANCER_STRUCT_COUNT] = {
-      sizeof(lancer_mesh),         sizeof(lancer_instance),       sizeof(lancer_parameter), sizeof(lancer_lobe),
-      sizeof(lancer_material),     sizeof(lancer_light),          sizeof(lancer_camera),    sizeof(lancer_settings),
-      sizeof(lancer_progress),     sizeof(lancer_statistics),     sizeof(lancer_hit),       sizeof(lancer_vertex),
-      sizeof(lancer_light_sample), sizeof(lancer_bsdf_sample),    sizeof(lancer_attribute), sizeof(lancer_image),
-      sizeof(lancer_node),         sizeof(lancer_principled),     sizeof(lancer_world),     sizeof(lancer_lobe_info),
-      sizeof(lancer_error),        sizeof(lancer_denoised_error), sizeof(lancer_range),     sizeof(lancer_part),
-      sizeof(lancer_portal),       sizeof(lancer_made)};
+      sizeof(lancer_mesh),           sizeof(lancer_instance),    sizeof(lancer_parameter),
+      sizeof(lancer_lobe),           sizeof(lancer_material),    sizeof(lancer_light),
+      sizeof(lancer_camera),         sizeof(lancer_settings),    sizeof(lancer_progress),
+      sizeof(lancer_statistics),     sizeof(lancer_hit),         sizeof(lancer_vertex),
+      sizeof(lancer_light_sample),   sizeof(lancer_bsdf_sample), sizeof(lancer_attribute),
+      sizeof(lancer_image),          sizeof(lancer_node),        sizeof(lancer_principled),
+      sizeof(lancer_world),          sizeof(lancer_lobe_info),   sizeof(lancer_error),
+      sizeof(lancer_denoised_error), sizeof(lancer_range),       sizeof(lancer_part),
+      sizeof(lancer_portal),         sizeof(lancer_made)};
   return which < LANCER_STRUCT_COUNT ? uint32_t(sizes[which]) : 0;
 }
 
@@ -143,8 +145,7 @@ lancer_status lancer_scene_commit(lancer_scene scene, uint32_t accelerator, uint
     // The object owns the thread, so the pointer is valid for as long as the thread works.
     SceneObject *const target = object.get();
     object->builder->start([target, accelerator, context](uint32_t) {
-      target->scene =
-          commit(target->description, static_cast<AcceleratorKind>(accelerator), context, target->before.get());
+      target->scene = commit(target->description, static_cast<AcceleratorKind>(accelerator), context, target->before.get());
       target->before.reset();
     });
     // Change the state only after the thread has started: if memory is missing, no commit is running.

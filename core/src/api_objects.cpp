@@ -99,8 +99,8 @@ lancer_status lancer_object_create_material(const lancer_material *material, uin
   });
 }
 
-lancer_status lancer_object_create_light(const lancer_light *light, uint32_t number, uint32_t image_count, const lancer_object *images,
-                                         lancer_object *object) {
+lancer_status lancer_object_create_light(const lancer_light *light, uint32_t number, uint32_t image_count,
+                                         const lancer_object *images, lancer_object *object) {
   return create(light, object, [&](const lancer_light &source) {
     Messages messages;
     LightDescription read = read_light(source, number, images_of(image_count, images), messages);

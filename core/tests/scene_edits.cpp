@@ -197,8 +197,8 @@ std::vector<uint32_t> slots_of(const Listed &listed) {
 
 void add_instances(lancer_scene scene, const Listed &listed) {
   const std::vector<uint32_t> slots = slots_of(listed);
-  ASSERT_EQ(lancer_scene_add_instances(scene, uint32_t(listed.instances.size()), listed.instances.data(), uint32_t(slots.size()),
-                                       slots.data(), nullptr, 0),
+  ASSERT_EQ(lancer_scene_add_instances(scene, uint32_t(listed.instances.size()), listed.instances.data(),
+                                       uint32_t(slots.size()), slots.data(), nullptr, 0),
             LANCER_OK)
       << lancer_last_error();
   if (listed.infos.empty())
@@ -393,6 +393,30 @@ TEST(SceneEdits, MakeOnlyWhatAnEditTouches) {
   after = listed;
   after.meshes[1] = 3;
   EXPECT_EQ(counts(made_by(pool, listed, after)), (std::vector<uint32_t>{1, 1, 0, 0, 0, 1})) << "a displaced mesh";
+}
+
+TEST(SceneEdits, FacesInOnePlaneFollowTheirMaterials) {
+  Random random(7);
+  const Pool pool(random);
+  Listed listed;
+  // Two floors at one place: the first is hit as long as light does not pass it.
+  for (uint32_t i = 0; i < 2; ++i) {
+    lancer_instance floor = {};
+    to_rows(glm::dmat4(1.0), floor.matrix);
+    floor.kind = LANCER_PLANE;
+    floor.first_slot = i;
+    floor.slot_count = 1;
+    listed.instances.push_back(floor);
+  }
+  const lancer_scene scene = edited(pool, listed, 0);
+  commit(scene, LANCER_BVH, 1);
+  listed.materials[0] = 3;
+  const lancer_scene next = edited(pool, listed, scene), anew = made_anew(pool, listed);
+  commit(next, LANCER_BVH, 1);
+  commit(anew, LANCER_BVH, 1);
+  expect_equal(show(next), show(anew));
+  for (const lancer_scene each : {scene, next, anew})
+    lancer_scene_destroy(each);
 }
 
 TEST(SceneEdits, RefuseWhatIsNotThere) {

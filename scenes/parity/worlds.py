@@ -102,7 +102,7 @@ def world_hot_pixel(scene):
 
 @case(quick=True, bounces=1)
 def world_on_coarse_shapes(scene):
-    """Smooth cones of few faces: their normals let light shine that comes from behind the faces, under a sky with a bright spot."""
+    """Smooth cones of few faces under a sky with a bright spot: their normals let light shine from behind the faces."""
     spot = np.full((8, 16, 4), 0.2)
     spot[5, 3, :3] = spot[2, 12, :3] = 8.0
     image = images.image("Spot", spot, images.LINEAR, is_float=True, pack=False)

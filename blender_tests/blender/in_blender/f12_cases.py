@@ -211,7 +211,7 @@ def progress():
 
 
 def first_picture():
-    """Return the alpha of the first picture shown, and how often pictures are handed to Blender."""
+    """Return how many colours the first two pictures have, whether the first has large pixels, and the number of pictures."""
     from addon.bindings.enums import Pass
     from addon.engine import passes
 
@@ -220,7 +220,7 @@ def first_picture():
     fill = passes.fill
 
     def note(layer, read, wanted):
-        pictures.append(read(Pass.COMBINED)[..., 3].copy() if not pictures else None)
+        pictures.append(read(Pass.COMBINED).copy() if len(pictures) < 2 else None)
         fill(layer, read, wanted)
 
     passes.fill = note
@@ -228,4 +228,7 @@ def first_picture():
         bpy.ops.render.render()
     finally:
         passes.fill = fill
-    return {"blank": int((pictures[0] == 0).sum()), "done": int((pictures[0] == 1).sum()), "shown": len(pictures)}
+    colors = [len(np.unique(picture.reshape(-1, 4), axis=0)) for picture in pictures[:2]]
+    coarse, covered = pictures[0], [bool((picture[..., 3] == 1.0).all()) for picture in pictures[:2]]
+    large = bool((coarse[:, 0::8] == coarse[:, 7::8]).all() and (coarse[0::8] == coarse[7::8]).all())
+    return {"colors": colors, "large": large, "covered": covered, "shown": len(pictures)}

@@ -16,6 +16,18 @@ def first_look(rounds, name, **settings):
     return {engine: middles(found) for engine, found in by_turns(rounds, ("LANCER", "CYCLES"), render).items()}
 
 
+def frames(rounds, threads):
+    """Return {kind of animation: {engine: seconds of a frame beside its samples}}, measured by turns."""
+    found = {}
+    for kind in ("camera", "character", "instances"):
+
+        def show(engine, _, kind=kind):
+            return jobs.in_blender("frames", engine=engine, kind=kind, threads=threads)
+
+        found[kind] = {engine: middles(all_) for engine, all_ in by_turns(rounds, ("LANCER", "CYCLES"), show).items()}
+    return found
+
+
 def first_shown(rounds, threads):
     size = {"width": 640, "height": 480, "samples": 4}
     return middles([jobs.in_blender("first_shown", name="balls", threads=threads, **size) for _ in range(rounds)])

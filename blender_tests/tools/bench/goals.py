@@ -151,14 +151,14 @@ def _instances(figures):
 
 def _first_sample(figures):
     parts = []
-    for name in ("balls", "million"):
+    for name in ("balls", "million", "instances"):
         look = get_dict(figures, "first_look", name)
         time = over(get(look, "CYCLES", "seconds"), get(look, "LANCER", "seconds"))
         memory = over(get(look, "LANCER", "peak_bytes"), get(look, "CYCLES", "peak_bytes"))
         parts.append(_part(f"{name}: Cycles' time / ours", time, "{:.2f}", lambda x: x >= 1.3))
         parts.append(_part("our memory / Cycles'", memory, "{:.2f}", lambda x: x <= 1.0))
     goal = "1.3x; memory above Blender's own not more than Cycles'"
-    return _all("F12 to the end of the first sample, against Cycles: balls; 1 million triangles", goal, parts)
+    return _all("F12 to the end of the first sample, against Cycles: balls; 1 million triangles; 20 000 instances", goal, parts)
 
 
 def _heavy_set_up(figures):
@@ -227,6 +227,28 @@ def _view(figures):
     return _all("3D view in Rendered shading, balls, 960 x 540, software GL", "0.2 s; 0.1 s; 8 a second", parts)
 
 
+_EDITS = {"material": 0.1, "object": 0.1, "mesh": 0.15, "lamp": 0.15, "world": 0.15}
+
+
+def _edits(figures):
+    parts = []
+    for name, limit in _EDITS.items():
+        ours, theirs = (get(figures, "edits", engine, name) for engine in ("LANCER", "CYCLES"))
+        beside = "" if theirs is None else f" (Cycles {theirs:.2f} s)"
+        parts.append(_part(f"{name}{beside}:", ours, "{:.2f} s", lambda x, limit=limit: x <= limit))
+    goal = "0.1 s; mesh, lamp, world 0.15 s"
+    return _all("first picture after an edit, 3D view of a million faces, software GL", goal, parts)
+
+
+def _frames(figures):
+    parts = []
+    for name in ("camera", "character", "instances"):
+        ours, theirs = (get(figures, "frames", name, engine, "seconds") for engine in ("LANCER", "CYCLES"))
+        parts.append(_part(f"{name}: our time / Cycles'", over(ours, theirs), "{:.2f}", lambda x: x <= 0.5))
+    goal = "half of Cycles'"
+    return _all("a frame beside its samples, Persistent Data: camera; deforming head; 20 000 moving instances", goal, parts)
+
+
 def _leaks(figures):
     """A leak misses the goal with any number of rays; no leak reaches it only with as many rays as the goal names."""
     count, rays = get(figures, "rays", "leaks"), get(figures, "rays", "leak_rays") or 0
@@ -277,4 +299,6 @@ _ROWS = (
     _many_machines,
     _window,
     _view,
+    _edits,
+    _frames,
 )

@@ -56,8 +56,9 @@ def measure_rest(figures, arguments, say):
     rounds, threads = (1 if arguments.quick else arguments.rounds), arguments.threads
     figures["first_look"] = {}
     heavy = () if arguments.quick else ("terrain", "crowd")
-    for name in ("balls", "million", *heavy):
+    for name in ("balls", "million", "instances", *heavy):
         attempt(figures["first_look"], name, say, extras.first_look, rounds, name, threads=threads)
+    attempt(figures, "frames", say, extras.frames, rounds, threads)
     attempt(figures, "first_shown", say, extras.first_shown, rounds, threads)
     attempt(figures, "million", say, extras.prepare, rounds, "million", threads)
     attempt(figures, "instances", say, extras.prepare, rounds, "instances", threads)
@@ -76,6 +77,7 @@ def measure_rest(figures, arguments, say):
         figures["roofline"] = rays.roofline(figures["limits"], figures["rays"], threads)
     attempt(figures, "window", say, window.gaps, rounds, 5.0 if arguments.quick else 20.0, threads)
     attempt(figures, "view", say, window.view, rounds, threads)
+    attempt(figures, "edits", say, window.edits, rounds, threads)
     attempt(figures, "classic", say, classic.measure, rounds, threads, arguments.quick)
     if not arguments.quick:
         attempt(figures, "accelerators", say, extras.accelerators, rounds, threads)

@@ -38,6 +38,15 @@ def view(rounds, threads):
     return figures
 
 
+def edits(rounds, threads):
+    """Return {engine: {kind of edit: seconds until shown}} in a view of a million faces, measured by turns."""
+    answers = _answers(rounds, "window_edits.py", _REGION, threads)
+    names = [name for name in answers["LANCER"][0] if name != "region"]
+    for answer in (answer for found in answers.values() for answer in found):
+        answer.update({name: middle(answer[name])["median"] for name in names})
+    return {engine: middles(found, names) for engine, found in answers.items()}
+
+
 def _answers(rounds, script, size, *arguments):
     """Return {engine: [answer of each window]}."""
     with windows.screen(*_SCREEN) as display:

@@ -6,6 +6,7 @@ import time
 
 import bpy
 import numpy as np
+from mathutils import Vector
 
 import addon
 import scenes
@@ -106,6 +107,63 @@ def render(engine, name, threads, width, height, samples, seed, bounces=12, pict
     return result
 
 
+def _turn_camera(scene):
+    """A camera goes through the scene."""
+    place = scene.camera.location.copy()
+
+    def show(number):
+        scene.camera.location = place + Vector((0.01 * number, 0.02 * number, 0.0))
+
+    return show
+
+
+def _bend_head(scene):
+    """A head of 251 904 triangles bends: all its vertices move."""
+    thing = next(thing for thing in scene.objects if thing.type == "MESH")
+    bend = thing.modifiers.new("Bend", "SIMPLE_DEFORM")
+    bend.deform_method = "BEND"
+
+    def show(number):
+        bend.angle = 0.05 * number
+
+    return show
+
+
+def _move_instances(scene):
+    """All instances move, each along its own way."""
+    things = [thing for thing in scene.objects if thing.data and thing.data.name.startswith("Monkey")]
+    places = [thing.location.copy() for thing in things]
+
+    def show(number):
+        for index, (thing, place) in enumerate(zip(things, places, strict=True)):
+            thing.location = place + Vector((0.01 * number * (index % 7 - 3), 0.01 * number * (index % 5 - 2), 0.0))
+
+    return show
+
+
+# The scene of each kind of animation, and the function that returns how a frame is shown.
+_ANIMATIONS = {
+    "camera": ("daylight", _turn_camera),
+    "character": ("head", _bend_head),
+    "instances": ("instances", _move_instances),
+}
+
+
+def frames(engine, kind, threads, count=5):
+    """Return the seconds of a frame beside its samples with Persistent Data: the median of all frames but the first."""
+    name, animated = _ANIMATIONS[kind]
+    scene = set_up(name, threads, 320, 180, 1)
+    scene.render.engine = engine
+    scene.render.use_persistent_data = True
+    show, beside = animated(scene), []
+    for number in range(count):
+        show(number)
+        bpy.context.view_layer.update()
+        found = press_f12(scene)
+        beside.append(found.wall - found.seconds)
+    return {"first_seconds": beside[0], "seconds": float(np.median(beside[1:]))}
+
+
 def denoised(engine, name, threads, width, height, counts, seed, folder):
     """Press F12 with denoising at each number of samples; write folder/COUNT.npy and return [(count, seconds)]."""
     scene = set_up(name, threads, width, height)
@@ -194,7 +252,7 @@ def versions():
     }
 
 
-TASKS = (f12, first_shown, render, denoised, snapshot, prepare, accelerators, versions)
+TASKS = (f12, first_shown, frames, render, denoised, snapshot, prepare, accelerators, versions)
 
 if __name__ == "__main__":
     registered(lambda: workers.answer(*TASKS))

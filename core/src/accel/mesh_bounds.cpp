@@ -23,7 +23,8 @@ MeshCells find_cells(const MeshView &mesh, const Extent &whole) {
   MeshCells filled;
   for (const auto &plane : cells)
     for (const auto &row : plane)
-      std::copy_if(std::begin(row), std::end(row), std::back_inserter(filled.boxes), [](const Extent &e) { return !e.empty(); });
+      std::copy_if(std::begin(row), std::end(row), std::back_inserter(filled.boxes),
+                   [](const Extent &e) { return !e.empty(); });
   return filled;
 }
 

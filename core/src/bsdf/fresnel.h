@@ -177,7 +177,8 @@ template <class F> LANCER_LANE FacetResponse<F> bare_response(const Lobe<F> &lob
 
 namespace lancer {
 
-// cos_i: of wo to the facet; below 0 where a normal faces away from wo, of which dielectrics take the magnitude, as Cycles does.
+// cos_i: of wo to the facet; below 0 where a normal faces away from wo, of which dielectrics take the magnitude, as Cycles
+// does.
 template <class F> LANCER_LANE FacetResponse<F> facet_response(const Lobe<F> &lobe, F cos_i) {
   FacetResponse<F> response = bare_response(lobe, cos_i);
   if (lobe.film)

@@ -32,8 +32,8 @@ public:
   Displacement(const Description &description, std::span<MeshView> views, std::span<const ObjectAttributeView> attributes,
                const BuildContext &context, const Move &move)
       : description_(description), context_(context), number_(move.instance), given_mesh_(move.given_mesh),
-        instance_(description.instances[number_]), views_(views),
-        geometry_{views, description.instances, description.object_infos, attributes} {}
+        instance_(description.instances[number_]),
+        views_(views), geometry_{views, description.instances, description.object_infos, attributes} {}
 
   // Returns the displaced mesh; the given one if no face is displaced.
   std::shared_ptr<const Mesh> run() {
@@ -90,7 +90,7 @@ private:
     surface.material = place.material;
     surface.p = instance_.to_world.point(glm::dvec3(mesh_.positions[place.vertex]));
     surface.bary = {place.corner == 1 ? 1.0 : 0.0, place.corner == 2 ? 1.0 : 0.0};
-    surface.ng = carried_normal(instance_.to_object, face_normal(mesh_, place.triangle));
+    surface.ng = carried_normal(instance_.to_object, face_normal(views_[instance_.mesh], place.triangle));
     surface.ns = carried_normal(instance_.to_object, glm::dvec3(normals[place.vertex]));
     // Faces with opposite normals leave a vertex without a normal.
     if (surface.ns == glm::vec3(0.0f))
@@ -170,7 +170,7 @@ private:
   const Instance &instance_;
   std::span<MeshView> views_;
   const GeometryView geometry_;
-  Mesh mesh_; // the displaced copy
+  Mesh mesh_;                // the displaced copy
   std::vector<bool> renews_; // per triangle: its material displaces, and its normals are recomputed
   bool keeps_ = false;       // some displaced triangle keeps its normals
   std::vector<Place> places_;

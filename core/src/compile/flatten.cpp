@@ -50,8 +50,7 @@ void lay_mesh(Mesh &mesh, uint32_t number, const glm::dvec3 &axis, bool keeps_ge
   if (keeps_generated)
     keep_generated(mesh, attribute_name("generated"));
   for (const MeshAttribute &attribute : mesh.attributes)
-    if (attribute.channels >= 3 &&
-        (attribute.name == kUndisplaced || attribute_of(attribute.name).starts_with("tangent:")))
+    if (attribute.channels >= 3 && (attribute.name == kUndisplaced || attribute_of(attribute.name).starts_with("tangent:")))
       lay(std::span(mesh.attribute_values).subspan(attribute.first, mesh.count_of(attribute)), attribute.channels, axis);
   for (glm::vec3 &p : mesh.positions)
     p = glm::vec3(across(axis, glm::dvec3(p)));

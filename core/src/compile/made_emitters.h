@@ -19,8 +19,8 @@ struct MadeEmissiveFaces {
 
   // Whether both are made from the same data, but for the objects' data that nodes may read.
   bool same_source(const MadeEmissiveFaces &other) const {
-    return mesh == other.mesh && materials == other.materials && of_mesh == other.of_mesh && !by_nodes &&
-           (of_mesh || instance.same(other.instance));
+    const bool same_surface = mesh == other.mesh && materials == other.materials && of_mesh == other.of_mesh;
+    return same_surface && !by_nodes && (of_mesh || instance.same(other.instance));
   }
 };
 

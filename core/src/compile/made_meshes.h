@@ -1,5 +1,5 @@
-// Meshes that commit() makes from described ones: displaced by materials, or laid in the plane of a flattening placement. The next
-// scene takes them over where all that they depend on is the same.
+// Meshes that commit() makes from described ones: displaced by materials, or laid in the plane of a flattening placement. The
+// next scene takes them over where all that they depend on is the same.
 #pragma once
 
 #include "scene/description.h"

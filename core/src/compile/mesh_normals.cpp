@@ -39,11 +39,12 @@ std::vector<glm::vec3> normals_by_angle(const MeshView &mesh) {
 
 // Sets the normals of vertices to the mean of the faces' normals.
 void renew_at_vertices(Mesh &mesh, const std::vector<bool> &triangles) {
+  const MeshView view = mesh;
   std::vector<glm::dvec3> sums(mesh.positions.size(), glm::dvec3(0.0));
   for (uint32_t i = 0; i < mesh.triangles.size(); ++i)
     if (triangles[i])
       for (int corner = 0; corner < 3; ++corner)
-        sums[mesh.triangles[i][corner]] += face_normal(mesh, i);
+        sums[mesh.triangles[i][corner]] += face_normal(view, i);
   for (size_t i = 0; i < sums.size(); ++i)
     if (sums[i] != glm::dvec3(0.0))
       mesh.normals[i] = glm::vec3(unit_or_zero(sums[i]));
@@ -52,6 +53,7 @@ void renew_at_vertices(Mesh &mesh, const std::vector<bool> &triangles) {
 // Corners of a vertex that shared a normal share one again; creases stay.
 void renew_at_corners(Mesh &mesh, const std::vector<bool> &triangles) {
   using Key = std::tuple<uint32_t, float, float, float>;
+  const MeshView view = mesh;
   std::map<Key, glm::dvec3> sums;
   const auto key = [&](uint32_t triangle, int corner) {
     const glm::vec3 &n = mesh.normals[size_t(triangle) * 3 + size_t(corner)];
@@ -60,7 +62,7 @@ void renew_at_corners(Mesh &mesh, const std::vector<bool> &triangles) {
   for (uint32_t i = 0; i < mesh.triangles.size(); ++i)
     if (triangles[i])
       for (int corner = 0; corner < 3; ++corner)
-        sums[key(i, corner)] += face_normal(mesh, i);
+        sums[key(i, corner)] += face_normal(view, i);
   std::vector<glm::vec3> normals(mesh.normals.begin(), mesh.normals.end());
   for (uint32_t i = 0; i < mesh.triangles.size(); ++i)
     if (triangles[i])

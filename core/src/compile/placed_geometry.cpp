@@ -69,6 +69,8 @@ void complete(PlacedGeometry &placed, const Instance &instance) {
 
 bool same_bits(const void *a, const void *b, size_t bytes) { return bytes == 0 || std::memcmp(a, b, bytes) == 0; }
 
+bool same(const Normalisation &a, const Normalisation &b) { return same_bits(&a, &b, sizeof a); }
+
 bool same(const std::vector<ObjectAttribute> &a, const std::vector<ObjectAttribute> &b) {
   return std::ranges::equal(a, b, [](const ObjectAttribute &x, const ObjectAttribute &y) {
     return x.name == y.name && x.values.size() == y.values.size() &&
@@ -76,12 +78,18 @@ bool same(const std::vector<ObjectAttribute> &a, const std::vector<ObjectAttribu
   });
 }
 
+bool same(const std::vector<ObjectInfo> &a, const std::vector<ObjectInfo> &b) {
+  return a.size() == b.size() && same_bits(a.data(), b.data(), a.size() * sizeof(ObjectInfo));
+}
+
+bool same(const std::vector<Instance> &a, const std::vector<Instance> &b) {
+  return std::ranges::equal(a, b, [](const Instance &x, const Instance &y) { return x.same(y); });
+}
+
 bool same(const PlacedGeometry &a, const PlacedGeometry &b) {
-  return a.kind == b.kind && a.owners == b.owners && a.object_infos.size() == b.object_infos.size() &&
-         same_bits(&a.normalisation, &b.normalisation, sizeof a.normalisation) &&
-         std::ranges::equal(a.instances, b.instances, [](const Instance &x, const Instance &y) { return x.same(y); }) &&
-         same_bits(a.object_infos.data(), b.object_infos.data(), a.object_infos.size() * sizeof(ObjectInfo)) &&
-         same(a.object_attributes, b.object_attributes);
+  const bool same_objects = same(a.object_infos, b.object_infos) && same(a.object_attributes, b.object_attributes);
+  const bool same_places = same(a.normalisation, b.normalisation) && same(a.instances, b.instances);
+  return a.kind == b.kind && a.owners == b.owners && same_objects && same_places;
 }
 
 } // namespace

@@ -12,9 +12,9 @@ namespace lancer {
 
 struct PlacedGeometry {
   // The memory that the view refers to.
-  std::vector<std::shared_ptr<const Mesh>> owners;      // of meshes
-  std::vector<const Mesh *> owner_of;                   // the same
-  std::vector<std::shared_ptr<const void>> kept;        // smooth normals and centres of polygons
+  std::vector<std::shared_ptr<const Mesh>> owners; // of meshes
+  std::vector<const Mesh *> owner_of;              // the same
+  std::vector<std::shared_ptr<const void>> kept;   // smooth normals and centres of polygons
   std::vector<MeshView> meshes;
   std::vector<Instance> instances;
   std::vector<ObjectInfo> object_infos;
@@ -30,8 +30,8 @@ struct PlacedGeometry {
   size_t bytes() const;
 };
 
-// Returns the geometry of a description whose displaced and flattened meshes are made, or that of before if it is the same. Takes
-// the instances and the data of objects out of the description.
+// Returns the geometry of a description whose displaced and flattened meshes are made, or that of before if it is the same.
+// Takes the instances and the data of objects out of the description.
 std::shared_ptr<const PlacedGeometry> place_geometry(Description &description, AcceleratorKind kind,
                                                      const BuildContext &context,
                                                      const std::shared_ptr<const PlacedGeometry> &before);

@@ -29,9 +29,9 @@ struct Scene {
   std::vector<std::shared_ptr<const LightDescription>> light_owners;
   std::vector<std::shared_ptr<const Image>> images;
   std::shared_ptr<const World> world_owner;
-  MadeMeshes made_meshes;         // displaced and flattened
-  MadeEmitters made_emitters;     // trees of emitting faces
-  PlaneRules plane_rules;         // of accelerator
+  MadeMeshes made_meshes;     // displaced and flattened
+  MadeEmitters made_emitters; // trees of emitting faces
+  PlaneRules plane_rules;     // of accelerator
 
   GeometryView geometry;
   std::vector<uint32_t> slots;

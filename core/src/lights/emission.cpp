@@ -28,8 +28,7 @@ glm::vec3 EmissionAt::operator()(const Surface &surface, const glm::vec3 &wo, co
   if (!material->layered_emission)
     return own;
   // The tint of the layers above the emitting one depends on the direction: build all lobes.
-  find_lobes<float>(&material, PlaceValues{nodes_.values()}, false, wo, surface.ns, surface.ng, bsdf_,
-                    {.ends = true});
+  find_lobes<float>(&material, PlaceValues{nodes_.values()}, false, wo, surface.ns, surface.ng, bsdf_, {.ends = true});
   return own + bsdf_.emission;
 }
 

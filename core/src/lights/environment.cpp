@@ -100,8 +100,8 @@ Environment::Environment(const WorldView &world, const Normalisation &normalisat
   mean_ = double(weight_of(evaluate(glm::dvec3(0.0, 0.0, 1.0), values, nullptr, nullptr)));
 }
 
-glm::vec3 Environment::evaluate(const ProgramView &program, const glm::dvec3 &wi, std::span<glm::vec4> values, const Camera *camera,
-                                const glm::dvec3 *eye, const LightPath<float> &path) const {
+glm::vec3 Environment::evaluate(const ProgramView &program, const glm::dvec3 &wi, std::span<glm::vec4> values,
+                                const Camera *camera, const glm::dvec3 *eye, const LightPath<float> &path) const {
   NodeContext context;
   context.normalisation = normalisation_;
   context.camera = camera;

@@ -24,9 +24,9 @@ class Environment {
 public:
   // Makes a black environment.
   Environment() = default;
-  // The memory of the world and the normalisation must outlive the environment. Where the radiance differs between directions, the
-  // constructor evaluates it in all of them and makes the sampling maps. No camera is known at that time: where nodes read the
-  // camera, the map is a guess, and the uniform share of the samples covers the rest. Surfaces sample in proportion to the
+  // The memory of the world and the normalisation must outlive the environment. Where the radiance differs between directions,
+  // the constructor evaluates it in all of them and makes the sampling maps. No camera is known at that time: where nodes read
+  // the camera, the map is a guess, and the uniform share of the samples covers the rest. Surfaces sample in proportion to the
   // radiance above the mean, because BSDF samples find the rest equally well (Karlik et al., "MIS Compensation: Optimizing
   // Sampling Techniques in Multiple Importance Sampling", 2019). Under two pictures of the sky, this leaves 0.48 and 0.83 of
   // the variance. Glass samples from a second map, proportional to the radiance as in Cycles. It needs that density because the
@@ -85,7 +85,9 @@ private:
   void make_maps(const BuildContext &context, bool glass);
   // Returns the integral of a sun's weight over its disc. plain: the nodes without the suns.
   double flux_of(const Sun &sun, const ProgramView &plain) const;
-  const DirectionMap &map(bool transmits) const { return transmits && has_map_of_glass() ? maps_->in_proportion : maps_->above_mean; }
+  const DirectionMap &map(bool transmits) const {
+    return transmits && has_map_of_glass() ? maps_->in_proportion : maps_->above_mean;
+  }
 
   WorldView world_;
   const Normalisation *normalisation_ = nullptr;

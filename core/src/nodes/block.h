@@ -16,7 +16,7 @@ struct NodeRays;
 
 // Scene data that any node may read.
 struct NodeScene {
-  const GeometryView *geometry = nullptr; // null: no instances
+  const GeometryView *geometry = nullptr;       // null: no instances
   const Normalisation *normalisation = nullptr; // null: the user's world is the normalised one
   const Camera *camera = nullptr;               // null: CAMERA and WINDOW use the world's frame
 };

@@ -179,7 +179,8 @@ template <class F> Site<F> site_of(const NodeBlock &block, int first) {
   return site;
 }
 
-template <class F> void run_block(const ProgramView &program, ScheduleView schedule, const NodeBlock &block, NodeLanes *values) {
+template <class F>
+void run_block(const ProgramView &program, ScheduleView schedule, const NodeBlock &block, NodeLanes *values) {
   constexpr int width = Site<F>::kWidth;
   for (int first = 0; first < kBlockLanes; first += width)
     if (block.used >> first & ((1u << width) - 1u))

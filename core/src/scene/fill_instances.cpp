@@ -114,7 +114,8 @@ void add_instances(Description &description, uint32_t count, const lancer_instan
     instance.number = description.instances_given + i;
     const Placement placement = placement_of(Affine::from_rows(given.matrix), given.kind);
     if (!placement.fault.empty()) {
-      description.instance_messages.add(label("object", name_of(given), instance.number), placement.fault + "; it was left out");
+      description.instance_messages.add(label("object", name_of(given), instance.number),
+                                        placement.fault + "; it was left out");
       continue;
     }
     instance.to_world = placement.map;
@@ -136,8 +137,8 @@ void add_instances(Description &description, uint32_t count, const lancer_instan
 void check_references(const Description &description) {
   for (const Instance &instance : description.instances)
     if (instance.kind == ShapeKind::Mesh && instance.mesh >= description.meshes.size())
-      bad_argument("instance #" + std::to_string(instance.number) + ": mesh " + std::to_string(instance.mesh) + " >= " + std::to_string(description.meshes.size()) +
-                   " meshes");
+      bad_argument("instance #" + std::to_string(instance.number) + ": mesh " + std::to_string(instance.mesh) +
+                   " >= " + std::to_string(description.meshes.size()) + " meshes");
   check_slots(description.slots, description);
 }
 

@@ -152,7 +152,8 @@ uint32_t flags_of(uint32_t kind) {
 
 class ProgramReader {
 public:
-  ProgramReader(Images images, const std::string &owner, Program &program) : images_(images), owner_(owner), program_(program) {}
+  ProgramReader(Images images, const std::string &owner, Program &program)
+      : images_(images), owner_(owner), program_(program) {}
 
   Node read(const lancer_node &given, uint32_t at) {
     where_ = owner_ + ": node " + std::to_string(at) + ": ";

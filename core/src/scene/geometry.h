@@ -47,8 +47,9 @@ struct MeshView {
   std::span<const float> attribute_values;
   glm::vec3 low{-1.0f}, high{1.0f};
   NormalDomain normal_domain = NormalDomain::None;
-  std::span<const glm::vec3> smooth_normals; // per vertex; only if an instance with PHONG or GOURAUD uses a mesh without normals
-  std::span<const PolygonCenter> centers;    // by polygon; only if an instance with FLAT uses a mesh with polygons
+  std::span<const glm::vec3>
+      smooth_normals;                     // per vertex; only if an instance with PHONG or GOURAUD uses a mesh without normals
+  std::span<const PolygonCenter> centers; // by polygon; only if an instance with FLAT uses a mesh with polygons
 
   glm::vec3 vertex(uint32_t triangle, int corner) const { return positions[triangles[triangle][corner]]; }
 };

@@ -53,9 +53,9 @@ struct ImageView {
   uint32_t tile = 0;   // UDIM; 0 = none
   uint32_t levels = 1; // more: a level for a ray, each with half the sides of the one before
   bool has_matrix = false;
-  bool has_gaps = false;             // texels that are not finite
-  bool in_blocks = false;            // the order of LANCER_LAYOUT_BLOCKS; else [height][width][channels]
-  glm::mat3 matrix{1.0f};            // decoded RGB to the working space
+  bool has_gaps = false;  // texels that are not finite
+  bool in_blocks = false; // the order of LANCER_LAYOUT_BLOCKS; else [height][width][channels]
+  glm::mat3 matrix{1.0f}; // decoded RGB to the working space
   const std::byte *texels = nullptr;
 
   LANCER_LANE uint32_t channel_bytes() const { return kind == TexelKind::U8 ? 1 : kind == TexelKind::U16 ? 2 : 4; }
@@ -63,7 +63,8 @@ struct ImageView {
   LANCER_LANE size_t level_bytes(uint32_t level) const {
     const size_t texel = size_t(channels) * channel_bytes();
     const uint32_t across = level_side(width, level), up = level_side(height, level);
-    return in_blocks ? (size_t(blocks_along(across)) * blocks_along(up) << 2 * kBlockShift) * texel : size_t(across) * up * texel;
+    return in_blocks ? (size_t(blocks_along(across)) * blocks_along(up) << 2 * kBlockShift) * texel
+                     : size_t(across) * up * texel;
   }
   // Returns where the texels of a level begin; those of level `levels` would follow the last.
   LANCER_LANE size_t level_offset(uint32_t level) const {

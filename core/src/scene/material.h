@@ -96,8 +96,7 @@ struct Material : MaterialParameters {
   bool fixed() const { return program.nodes.empty(); }
   // Valid until the material changes.
   operator MaterialView() const {
-    return {*this,         lobes, portals, program, nullptr, surface_nodes, transmittance_nodes, emission_nodes,
-            displacement_nodes};
+    return {*this, lobes, portals, program, nullptr, surface_nodes, transmittance_nodes, emission_nodes, displacement_nodes};
   }
 };
 

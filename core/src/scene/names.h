@@ -1,5 +1,5 @@
-// Names of attributes as numbers, the same in all scenes of the process, so that a mesh and a material that were made for different
-// scenes agree.
+// Names of attributes as numbers, the same in all scenes of the process, so that a mesh and a material that were made for
+// different scenes agree.
 #pragma once
 
 #include <cstdint>

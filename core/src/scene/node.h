@@ -26,8 +26,8 @@ struct Node {
   uint32_t kind = 0, option = 0, flags = 0;
   uint32_t image = 0, image_count = 0; // in Program::images
   uint32_t first = 0;
-  uint32_t name = 0;      // of scene/names.h; kUndisplaced is outside its list
-  uint32_t tangent = 0;   // the name of the tangents of this UV map
+  uint32_t name = 0;                      // of scene/names.h; kUndisplaced is outside its list
+  uint32_t tangent = 0;                   // the name of the tangents of this UV map
   uint32_t heights = 0, height_count = 0; // BUMP: its schedule in Program::height_nodes
   int32_t changes = -1;   // of its value over a pixel: the number of the first of two values that hold them; -1: not needed
   bool steady = false;    // its value is taken as constant over a pixel
@@ -72,9 +72,7 @@ struct Program {
   uint32_t changing = 0;
 
   // Valid until the program changes.
-  operator ProgramView() const {
-    return {nodes, height_nodes, images, asks_light_path, looks_around, mipmapped, changing};
-  }
+  operator ProgramView() const { return {nodes, height_nodes, images, asks_light_path, looks_around, mipmapped, changing}; }
   size_t value_count() const { return ProgramView(*this).value_count(); }
   const Node *source(const Parameter &value) const { return ProgramView(*this).source(value); }
   // Numbers the changes that images with levels need; to be called when all nodes are there.

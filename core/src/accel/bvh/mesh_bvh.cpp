@@ -139,7 +139,9 @@ std::shared_ptr<const MeshBvh> tree_of(const MeshView &mesh, const Mesh *owner, 
 
 MeshBvh build_world_bvh(const GeometryView &geometry, const PlacedScene &placed, const std::vector<uint8_t> &unfolded,
                         const BuildContext &context) {
-  const auto mesh_of = [&](uint32_t instance) -> const MeshView & { return geometry.meshes[geometry.instances[instance].mesh]; };
+  const auto mesh_of = [&](uint32_t instance) -> const MeshView & {
+    return geometry.meshes[geometry.instances[instance].mesh];
+  };
   size_t count = 0;
   for (const uint32_t instance : placed.bounded)
     count += unfolded[instance] ? mesh_of(instance).triangles.size() : 1;

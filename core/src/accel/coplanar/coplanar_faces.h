@@ -125,8 +125,8 @@ CoplanarFaces find_coplanar_faces(const GeometryView &geometry, const FaceRoundi
 
 // Returns an accelerator that applies the priority order to the hits of another; in a scene without such faces, the other. If
 // several faces cover one place of a plane within rounding, a ray from either side hits the first in this order: opaque before
-// others, emitting before others, then smaller instance, smaller slot, smaller number. A ray that starts on a face hits no other
-// face of its plane.
+// others, emitting before others, then smaller instance, smaller slot, smaller number. A ray that starts on a face hits no
+// other face of its plane.
 std::shared_ptr<const Accelerator> order_coplanar_faces(std::shared_ptr<const Accelerator> unordered,
                                                         const GeometryView &geometry, PlaneRules rules,
                                                         const BuildContext &context, MeshOwners owners = {});

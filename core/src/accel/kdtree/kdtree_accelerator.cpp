@@ -82,10 +82,10 @@ private:
     const MeshView &mesh = geometry.meshes[shape.mesh];
     const auto limit = [&] { return box_tau_above(object_ray, shape.frame.scale, std::min(ray.tmax, best.t)); };
     meshes[shape.mesh]->traverse(object_ray, shape.frame, box_tau_below(object_ray, shape.frame.scale, ray.tmin), limit,
-                                [&](uint32_t triangle) {
-                                  try_triangle(ray, axes, sheared, mesh, instance, triangle, counting, best);
-                                  return any && best.valid();
-                                });
+                                 [&](uint32_t triangle) {
+                                   try_triangle(ray, axes, sheared, mesh, instance, triangle, counting, best);
+                                   return any && best.valid();
+                                 });
     return any && best.valid();
   }
 

@@ -62,7 +62,8 @@ struct alignas(64) LightChoices {
 };
 
 // The members of LightSample; target only of lights that are not far; distance: infinite for suns, unset for the environment.
-// pdf includes the probability of the choice, 0: no sample; weighed: in place of pdf in the weight against BSDF samples, 0: pdf.
+// pdf includes the probability of the choice, 0: no sample; weighed: in place of pdf in the weight against BSDF samples, 0:
+// pdf.
 struct alignas(64) LightSamples {
   Doubles wi[3], target[3], distance, pdf, weighed;
   Floats radiance[3];

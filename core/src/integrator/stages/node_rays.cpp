@@ -6,13 +6,13 @@ namespace lancer {
 
 SceneNodeRays::SceneNodeRays(const Scene &scene) : scene_(scene), own_(scene) {
   static constexpr auto of = [](void *tracer) -> SceneNodeRays & { return *static_cast<SceneNodeRays *>(tracer); };
-  functions_ = {
-      this, [](void *tracer, std::span<const Ray> rays, uint32_t instance) { return of(tracer).open(rays, instance); },
-      [](void *tracer, const Ray &ray, uint32_t instance) { return of(tracer).closest(ray, instance); },
-      [](void *tracer, const Ray &ray, uint32_t instance) { return of(tracer).all(ray, instance); },
-      [](const void *tracer, const Ray &ray, const Hit &hit) {
-        return static_cast<const SceneNodeRays *>(tracer)->surface(ray, hit);
-      }};
+  functions_ = {this,
+                [](void *tracer, std::span<const Ray> rays, uint32_t instance) { return of(tracer).open(rays, instance); },
+                [](void *tracer, const Ray &ray, uint32_t instance) { return of(tracer).closest(ray, instance); },
+                [](void *tracer, const Ray &ray, uint32_t instance) { return of(tracer).all(ray, instance); },
+                [](const void *tracer, const Ray &ray, const Hit &hit) {
+                  return static_cast<const SceneNodeRays *>(tracer)->surface(ray, hit);
+                }};
 }
 
 uint32_t SceneNodeRays::open(std::span<const Ray> rays, uint32_t instance) {

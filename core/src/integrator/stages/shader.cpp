@@ -37,9 +37,8 @@ glm::vec3 Shader::transmittance(const Ray &ray, const Hit &hit, const LightPath<
   const Cutout &cutout = scene_.cutouts[number];
   const bool on_mesh = instance.kind == ShapeKind::Mesh;
   if (on_mesh && cutout.alpha.known())
-    return glm::vec3(glm::max(
-        1.0f - alpha_at(cutout.alpha, scene_.geometry.meshes[instance.mesh], hit.primitive, {hit.u, hit.v}),
-        0.0f));
+    return glm::vec3(
+        glm::max(1.0f - alpha_at(cutout.alpha, scene_.geometry.meshes[instance.mesh], hit.primitive, {hit.u, hit.v}), 0.0f));
   if (on_mesh && cutout.painted) {
     nodes_.run_painted(material.program, material.transmittance_nodes, hit);
   } else {

@@ -37,7 +37,7 @@ struct alignas(64) SurfaceBlock {
 
 // The materials at the surfaces, and what their nodes say.
 struct alignas(64) MaterialBlock {
-  const MaterialView *material[kBlockLanes];           // all of one class
+  const MaterialView *material[kBlockLanes];       // all of one class
   Floats transmittance[3];                         // by describe()
   Floats through;                                  // by add() and ask_nodes(): the mean of the transmittance
   const float (*values)[4][kBlockLanes] = nullptr; // of nodes, four floats for every lane, by ask_nodes()
