@@ -42,7 +42,7 @@ _CALLS = {
     "lancer_object_create_light": (POINTER(Light), _u32, _u32, _Array, POINTER(_u64)),
     "lancer_object_create_world": (POINTER(World), _u32, _Array, POINTER(_u64)),
     "lancer_object_destroy": (_u64,),
-    "lancer_object_prepare": (_u64,),
+    "lancer_object_prepare": (_u64, _u32),
     "lancer_scene_edit": (_u64, POINTER(_u64)),
     "lancer_scene_set_objects": (_u64, _u32, _u32, _Array),
     "lancer_scene_clear_instances": (_u64,),

@@ -148,18 +148,22 @@ class _Handle:
 class Scene(_Handle, SceneProbes):
     """A scene in the library: create, fill, commit; upload() does all three.
 
-    before: a committed scene that differs little; the commit makes only the parts that differ. Both may be closed in any order.
+    before: a committed scene that differs little; the commit makes only the parts that differ. Both may be closed in any order,
+    also by another thread: a scene that is closed already is as none.
     stock: the Stock of the scenes that share objects; a scene without one shares those of before, or none.
     """
 
     def __init__(self, library=None, before=None, stock=None):
         handle = ctypes.c_uint64()
+        library = before.library if before is not None else library or load_library()
+        if before is not None:
+            status = library.lancer_scene_edit(before.handle, ctypes.byref(handle))
+            if status == Status.ERROR_HANDLE:
+                before = None
+            else:
+                check(status, library)
         if before is None:
-            library = library or load_library()
             check(library.lancer_scene_create(ctypes.byref(handle)), library)
-        else:
-            library = before.library
-            check(library.lancer_scene_edit(before.handle, ctypes.byref(handle)), library)
         self._own(library, library.lancer_scene_destroy, handle.value, MappedPages())
         self._stock = stock or (Stock() if before is None else before._stock)
         self._parts = []

@@ -30,20 +30,17 @@ class Part:
 
 
 class Stock:
-    """The Parts of all scenes that share it. Any thread may use it.
+    """The Parts of all scenes that share it. Any thread may use it."""
 
-    prepares: whether the library begins with the trees of new meshes at once, in a thread of its own.
-    """
-
-    def __init__(self, prepares=False):
-        self._prepares = prepares
+    def __init__(self):
         self._by_identity = {}  # weak references to the Parts of each record, by its address
         self._by_key = {}  # weak references to Parts of meshes and images, by key_of
 
-    def part(self, library, kind, record, number=0, images=(), keeps=True):
+    def part(self, library, kind, record, number=0, images=(), keeps=True, threads=None):
         """Return (Part, whether it was made). images: Parts of all images that nodes name by number.
 
         keeps: whether the Part keeps the record, by which it is known again.
+        threads: for the tree of a new mesh, which the library begins at once, 0 = all; None leaves the tree to the commit.
         """
         found = self._find(kind, record, images)
         if found is not None:
@@ -51,8 +48,8 @@ class Stock:
         used = {n: images[n] for n in _numbers(record) if n < len(images)}
         key = key_of(kind, record)
         part = Part(library, _make(library, kind, record, number, images), key, record if keeps else None, used)
-        if self._prepares and kind == ObjectKind.MESH:
-            check(library.lancer_object_prepare(part.handle), library)
+        if threads is not None:
+            check(library.lancer_object_prepare(part.handle, threads), library)
         if keeps:
             _add(self._by_identity, id(record), part)
             if key is not None:

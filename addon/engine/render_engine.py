@@ -14,6 +14,7 @@ from ..bindings.session import Cancelled, Scene, Session
 from ..denoise import view_layer as denoise
 from ..export.kept import Kept
 from ..export.scene import ExportOptions, export_scene
+from ..export.settings import threads_of
 from ..host import main_thread, redraw, shared_scenes
 from ..host.by_scene import ByScene
 from ..host.priority import lowered
@@ -180,7 +181,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             # Report it before the render takes its time.
             self._tell(scene, Messages([denoise.missing()]))
         wanted = tuple(passes.render_passes(scene, view_layer))
-        self._ahead = shared_scenes.Ahead()
+        self._ahead = shared_scenes.Ahead(threads_of(scene))
         begin = self._ahead.mesh if many_machines.wanted(scene) is None and scene.lancer.accelerator == "BVH" else None
         options = ExportOptions(self.camera_override, passes.sources(wanted), _kept.get(scene), begin)
         self._snapshot, messages = export_scene(depsgraph, options, self._is_over)

@@ -18,6 +18,12 @@ def glass_owner(scene):
     return own if cycles is None or any(own.is_property_set(name) for name in names) else cycles
 
 
+def threads_of(scene):
+    """Return the number of threads that may render a scene; 0 = all."""
+    render = scene.render
+    return render.threads if render.threads_mode == "FIXED" else default_threads
+
+
 def export_settings(depsgraph, passes, world, messages):
     """Return the snapshot.Settings of a depsgraph. passes: of enums.Pass; world: the layer's evaluated world, or None."""
     scene = depsgraph.scene
@@ -57,7 +63,7 @@ def export_settings(depsgraph, passes, world, messages):
         blended_features=bpy.app.version >= (5, 2),
         features=Features[own.features],
         passes=tuple(sorted({Pass.COMBINED, *passes})),
-        threads=render.threads if render.threads_mode == "FIXED" else default_threads,
+        threads=threads_of(scene),
         accelerator=Accelerator[own.accelerator],
         occlusion_distance=occlusion_distance(world),
         # A layer with another world keeps the mist of the scene's, as in Cycles.

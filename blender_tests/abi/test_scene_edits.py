@@ -13,6 +13,8 @@ from addon.bindings.enums import Pass
 from addon.bindings.session import Scene, Session
 from addon.bindings.snapshot import Instance, MeshData
 from addon.bindings.stock import Stock
+from addon.host import shared_scenes
+from addon.host.shared_scenes import Ahead
 
 _PASSES = (Pass.COMBINED, Pass.NORMAL, Pass.DIFFUSE_DIRECT)
 
@@ -135,6 +137,42 @@ def test_scenes_of_one_stock_share_equal_meshes_and_images():
             # The first may end while the second lives.
             one.close()
             assert pictures(two, again) == outcome(base)[0]
+
+
+def test_meshes_that_came_ahead_are_those_of_the_scene():
+    base, ahead = balls(), Ahead(threads=1)
+    for mesh in base.meshes:
+        ahead.mesh(mesh)
+    with Scene(stock=shared_scenes.stock) as uploaded:
+        uploads = sum(1 for _ in uploaded.filling(base))
+        ahead.end()
+        uploaded.commit()
+        assert uploads == len(base.materials) + len(base.lights) + len(base.images) + 2  # the world, the instances
+        assert pictures(uploaded, base) == outcome(base)[0]
+
+
+def test_the_nearest_scene_is_open_and_has_some_of_the_meshes():
+    base = balls()
+    fewer = base.replaced(
+        meshes=base.meshes[:1], instances=dataclasses.replace(base.instances, meshes=base.instances.meshes * 0)
+    )
+    strange = base.replaced(meshes=tuple(dataclasses.replace(mesh, name="strange") for mesh in base.meshes))
+    with Scene.upload(base) as near, Scene.upload(fewer) as far:
+        shared_scenes.remember(near)
+        shared_scenes.remember(far)
+        assert shared_scenes.nearest(base) is near
+        assert shared_scenes.nearest(strange) is None
+        near.close()
+        assert shared_scenes.nearest(base) is far
+    assert shared_scenes.nearest(base) is None
+
+
+def test_a_scene_that_another_thread_has_closed_is_as_none():
+    base = balls()
+    before = Scene.upload(base)
+    before.close()
+    with Scene.upload(base, before=before) as uploaded:
+        assert pictures(uploaded, base) == outcome(base)[0]
 
 
 def test_a_hundred_edits_leave_no_memory_behind():

@@ -24,6 +24,7 @@ void Objects::keep(uint32_t kind, lancer_status status, lancer_object object) {
   if (status != LANCER_OK)
     return;
   objects_[kind].push_back(object);
+  LANCER_CHECKED(lancer_object_prepare(object, 1));
   // The oldest goes, whoever has it.
   if (objects_[kind].size() > kMost) {
     gone_ = objects_[kind].front();

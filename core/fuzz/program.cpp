@@ -18,7 +18,7 @@ namespace {
 // The bytes that select a call for parts. They hardly occur where files from before there were parts select a call, so that
 // these keep their meaning: others select by their remainder.
 constexpr uint8_t kFirstOfParts = 240, kLastOfParts = 245;
-// Of objects and edits, likewise.
+// The bytes that select calls of objects and edits, which old files hardly have either.
 constexpr uint8_t kObject = 246, kEdit = 247, kChange = 248;
 
 constexpr uint32_t kMostCalls = 40, kMostScenes = 2, kMostSessions = 3, kMostRanges = 5, kMostRefinements = 4, kMostThings = 16;

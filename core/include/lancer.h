@@ -922,8 +922,9 @@ LANCER_API lancer_status lancer_object_create_world(const lancer_world *world, u
                                                     const lancer_object *images, lancer_object *object);
 LANCER_API lancer_status lancer_object_destroy(lancer_object object);
 /* Begins, in a thread of the library, with the work that a commit would do for this object alone: the tree of a mesh. So it
- * goes on while the caller still reads others. It is left out if nobody has the object any more when its turn comes. */
-LANCER_API lancer_status lancer_object_prepare(lancer_object object);
+ * goes on while the caller still reads others. It is left out if nobody has the object any more when its turn comes.
+ * threads: as of lancer_scene_commit. */
+LANCER_API lancer_status lancer_object_prepare(lancer_object object, uint32_t threads);
 
 /* Creates a scene that begins with all that a committed scene has, for changes. Its commit makes only the parts that differ and
  * shares all others, and its pictures have the bits of a scene that is filled anew. before may be destroyed at once. */

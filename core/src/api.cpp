@@ -132,8 +132,7 @@ lancer_status lancer_scene_commit(lancer_scene scene, uint32_t accelerator, uint
     object->require_filling();
     if (accelerator > LANCER_BRUTE_FORCE)
       bad_argument("scene: accelerator " + std::to_string(accelerator) + " is not one of 0, 1, 2");
-    if (threads > 1024)
-      bad_argument("scene: threads " + std::to_string(threads) + " > 1024");
+    check_threads("scene", threads);
     object->messages = object->description.messages();
     BuildContext context;
     context.threads = ThreadPool::resolved(threads);

@@ -2,6 +2,7 @@
 #include "compile/prepare.h"
 #include "lancer_probes.h"
 #include "objects.h"
+#include "render/thread_pool.h"
 
 #include <string>
 #include <utility>
@@ -20,54 +21,53 @@ template <class Record, class Read> lancer_status create(const Record *record, l
   });
 }
 
-// Returns the images of these handles.
-std::vector<Given<Image>> images_of(uint32_t count, const lancer_object *handles) {
+// Returns the objects of these handles, which must be of one kind. place: names a handle in errors, before its number.
+template <class T>
+std::vector<Given<T>> parts_of(const char *place, const char *kind, uint32_t count, const lancer_object *handles) {
   if (count)
-    require(handles, "object: images");
-  std::vector<Given<Image>> images;
-  images.reserve(count);
-  for (uint32_t i = 0; i < count; ++i) {
-    const auto part = part_of(handles[i]);
-    const auto *image = std::get_if<Given<Image>>(part.get());
-    if (!image)
-      bad_argument("object: image " + std::to_string(i) + " is no image");
-    images.push_back(*image);
-  }
-  return images;
-}
-
-// Returns the objects of these handles, which must be of one kind.
-template <class T> std::vector<Given<T>> parts_of(const char *kind, uint32_t count, const lancer_object *handles) {
+    require(handles, place);
   std::vector<Given<T>> objects;
   objects.reserve(count);
   for (uint32_t i = 0; i < count; ++i) {
     const auto part = part_of(handles[i]);
     const auto *given = std::get_if<Given<T>>(part.get());
     if (!given)
-      bad_argument("scene: object " + std::to_string(i) + " is no " + kind);
+      bad_argument(std::string(place) + " " + std::to_string(i) + " is no " + kind);
     objects.push_back(*given);
   }
   return objects;
 }
 
+std::vector<Given<Image>> images_of(uint32_t count, const lancer_object *handles) {
+  return parts_of<Image>("object: image", "image", count, handles);
+}
+
+// Returns an object of a record that may have messages. read: returns the object and fills the messages.
+template <class T, class Read> Given<T> given_by(const Read &read) {
+  Messages messages;
+  T object = read(messages);
+  return Given<T>(std::move(object), std::move(messages));
+}
+
 void set_objects(Description &description, uint32_t kind, uint32_t count, const lancer_object *objects) {
+  constexpr const char *kPlace = "scene: object";
   switch (kind) {
   case LANCER_OBJECT_IMAGE:
-    description.images = parts_of<Image>("image", count, objects);
+    description.images = parts_of<Image>(kPlace, "image", count, objects);
     return;
   case LANCER_OBJECT_MESH:
-    description.meshes = parts_of<Mesh>("mesh", count, objects);
+    description.meshes = parts_of<Mesh>(kPlace, "mesh", count, objects);
     return;
   case LANCER_OBJECT_MATERIAL:
-    description.materials = parts_of<Material>("material", count, objects);
+    description.materials = parts_of<Material>(kPlace, "material", count, objects);
     return;
   case LANCER_OBJECT_LIGHT:
-    description.lights = parts_of<LightDescription>("light", count, objects);
+    description.lights = parts_of<LightDescription>(kPlace, "light", count, objects);
     return;
   case LANCER_OBJECT_WORLD:
     if (count > 1)
       bad_argument("scene: " + std::to_string(count) + " worlds > 1");
-    description.world = count ? parts_of<World>("world", count, objects).front() : Given<World>();
+    description.world = count ? parts_of<World>(kPlace, "world", count, objects).front() : Given<World>();
     return;
   default:
     bad_argument("scene: kind " + std::to_string(kind) + " of objects is not one of 0 ... 4");
@@ -84,27 +84,23 @@ lancer_status lancer_object_create_image(const lancer_image *image, uint32_t num
 
 lancer_status lancer_object_create_mesh(const lancer_mesh *mesh, uint32_t number, lancer_object *object) {
   return create(mesh, object, [&](const lancer_mesh &source) {
-    Messages messages;
-    Mesh read = read_mesh(source, number, messages);
-    return Given<Mesh>(std::move(read), std::move(messages));
+    return given_by<Mesh>([&](Messages &messages) { return read_mesh(source, number, messages); });
   });
 }
 
 lancer_status lancer_object_create_material(const lancer_material *material, uint32_t number, uint32_t image_count,
                                             const lancer_object *images, lancer_object *object) {
   return create(material, object, [&](const lancer_material &source) {
-    Messages messages;
-    Material read = read_material(source, number, images_of(image_count, images), messages);
-    return Given<Material>(std::move(read), std::move(messages));
+    return given_by<Material>(
+        [&](Messages &messages) { return read_material(source, number, images_of(image_count, images), messages); });
   });
 }
 
 lancer_status lancer_object_create_light(const lancer_light *light, uint32_t number, uint32_t image_count,
                                          const lancer_object *images, lancer_object *object) {
   return create(light, object, [&](const lancer_light &source) {
-    Messages messages;
-    LightDescription read = read_light(source, number, images_of(image_count, images), messages);
-    return Given<LightDescription>(std::move(read), std::move(messages));
+    return given_by<LightDescription>(
+        [&](Messages &messages) { return read_light(source, number, images_of(image_count, images), messages); });
   });
 }
 
@@ -122,11 +118,14 @@ lancer_status lancer_object_destroy(lancer_object object) {
   });
 }
 
-lancer_status lancer_object_prepare(lancer_object object) {
+lancer_status lancer_object_prepare(lancer_object object, uint32_t threads) {
   return guard([&] {
+    check_threads("object", threads);
     const auto part = part_of(object);
+    // The count reads files of the system, and a scene may have 100 000 meshes: it is made once.
+    static const uint32_t processors = ThreadPool::resolved(0);
     if (const auto *mesh = std::get_if<Given<Mesh>>(part.get()))
-      prepare(mesh->object);
+      prepare(mesh->object, threads ? threads : processors);
     return LANCER_OK;
   });
 }
@@ -149,8 +148,6 @@ lancer_status lancer_scene_edit(lancer_scene before, lancer_scene *scene) {
 lancer_status lancer_scene_set_objects(lancer_scene scene, uint32_t kind, uint32_t count, const lancer_object *objects) {
   return guard([&] {
     const auto object = scene_of(scene);
-    if (count)
-      require(objects, "objects");
     const std::lock_guard lock(object->mutex);
     object->require_filling();
     set_objects(object->description, kind, count, objects);

@@ -92,6 +92,11 @@ inline void check_confidence(const char *what, double confidence) {
     bad_argument(std::string(what) + ": confidence " + std::to_string(confidence) + " must be between 0 and 1");
 }
 
+inline void check_threads(const char *what, uint32_t threads) {
+  if (threads > 1024)
+    bad_argument(std::string(what) + ": threads " + std::to_string(threads) + " > 1024");
+}
+
 inline void check_target(const char *what, double target) {
   if (!(target >= 0.0) || !std::isfinite(target))
     bad_argument(std::string(what) + ": target " + std::to_string(target) + " must be finite and not negative");

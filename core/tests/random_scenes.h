@@ -14,8 +14,7 @@ struct Ball {
   std::vector<float> positions, normals;
   std::vector<uint32_t> triangles;
 
-  Ball() {
-    constexpr uint32_t around = 8, rows = 5;
+  explicit Ball(uint32_t around = 8, uint32_t rows = 5) {
     for (uint32_t row = 0; row <= rows; ++row)
       for (uint32_t i = 0; i < around; ++i) {
         const double theta = std::numbers::pi * (row + 0.02) / (rows + 0.04), phi = 2.0 * std::numbers::pi * i / around;

@@ -15,7 +15,6 @@ sys.path[:0] = [os.path.dirname(os.path.dirname(os.path.dirname(HERE))), HERE]
 import window_watch  # noqa: E402
 from window_watch import delay  # noqa: E402
 
-import addon  # noqa: E402
 from scenes import parts  # noqa: E402
 
 ANSWER, ENGINE, THREADS = sys.argv[sys.argv.index("--") + 1 :]
@@ -106,11 +105,5 @@ def measure():
     return {**delays, "region": [region.width, region.height]}
 
 
-addon.register()
-bpy.ops.wm.read_factory_settings(use_empty=True)
-addon.unregister()
-addon.register()
-window_watch.watch(ENGINE)
-scene = bpy.context.scene
-window_watch.prepare(scene, THREADS)
+scene = window_watch.start(ENGINE, THREADS)
 window_watch.run(measure, ANSWER)

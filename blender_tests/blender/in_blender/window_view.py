@@ -7,7 +7,6 @@ import os
 import sys
 import time
 
-import bpy
 import numpy as np
 from mathutils import Quaternion
 
@@ -17,7 +16,6 @@ sys.path[:0] = [os.path.dirname(os.path.dirname(os.path.dirname(HERE))), HERE]
 import window_watch  # noqa: E402
 from window_watch import DOWN, delay, seen  # noqa: E402
 
-import addon  # noqa: E402
 from addon.viewport import viewport  # noqa: E402
 from scenes import spheres  # noqa: E402
 
@@ -61,12 +59,6 @@ def measure():
     }
 
 
-addon.register()
-bpy.ops.wm.read_factory_settings(use_empty=True)
-addon.unregister()
-addon.register()
-window_watch.watch(ENGINE)
-scene = bpy.context.scene
+scene = window_watch.start(ENGINE, THREADS)
 spheres.build_balls(scene)
-window_watch.prepare(scene, THREADS)
 window_watch.run(measure, ANSWER)

@@ -23,8 +23,22 @@ DOWN = Quaternion((1, 0, 0), 0.9)
 seen = []  # (time, mean of the part, a key that differs between pictures)
 
 
-def watch(engine):
-    """Read back each drawing of an engine: LANCER or CYCLES."""
+def start(engine, threads):
+    """Register the add-on, open an empty file and watch an engine: LANCER or CYCLES. Return the scene."""
+    addon.register()
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    addon.unregister()
+    addon.register()
+    _watch(engine)
+    scene = bpy.context.scene
+    scene.render.threads_mode, scene.render.threads = "FIXED", int(threads)
+    scene.cycles.use_preview_denoising = scene.cycles.use_preview_adaptive_sampling = False
+    bpy.context.preferences.view.show_splash = False
+    return scene
+
+
+def _watch(engine):
+    """Read back each drawing of an engine."""
     watched = addon.engine.render_engine.LancerRenderEngine if engine == "LANCER" else cycles.CyclesRender
     plain = watched.view_draw
 
@@ -36,12 +50,6 @@ def watch(engine):
         seen.append((time.monotonic(), float(values.mean()), hash(values.tobytes())))
 
     watched.view_draw = view_draw
-
-
-def prepare(scene, threads):
-    scene.render.threads_mode, scene.render.threads = "FIXED", int(threads)
-    scene.cycles.use_preview_denoising = scene.cycles.use_preview_adaptive_sampling = False
-    bpy.context.preferences.view.show_splash = False
 
 
 def open_view(scene, engine, distance, settling):

@@ -4,9 +4,13 @@
 #include "accel/mesh_bounds.h"
 #include "simd/parallel.h"
 
+#include <algorithm>
+#include <atomic>
 #include <condition_variable>
 #include <deque>
 #include <mutex>
+#include <new>
+#include <system_error>
 #include <thread>
 
 #if defined(__linux__)
@@ -17,17 +21,14 @@ namespace lancer {
 
 namespace {
 
-// A commit that waits for a tree helps nobody: the tree gets as many threads as the commit would give it.
-BuildContext context_of(const Mesh &mesh, const std::atomic<bool> &cancel) {
-  constexpr size_t kLarge = 65536;
-  return {mesh.triangles.size() < kLarge ? 1u : std::max(1u, std::thread::hardware_concurrency()), &cancel};
-}
+// Meshes with fewer triangles get one thread: starting others takes longer than they save.
+constexpr size_t kLarge = 65536;
 
-void make_tree(const Mesh &mesh, const std::atomic<bool> &cancel) {
+void make_tree(const Mesh &mesh, uint32_t threads, const std::atomic<bool> &cancel) {
   if (mesh.triangles.size() <= kMostUnfolded)
     return;
-  const PlacementFrame frame = mesh_frame(bounds_of(mesh, &mesh)->faces);
-  tree_of(mesh, &mesh, frame, context_of(mesh, cancel));
+  const BuildContext context{mesh.triangles.size() < kLarge ? 1 : threads, &cancel};
+  tree_of(mesh, &mesh, mesh_frame(bounds_of(mesh, &mesh)->faces), context);
 }
 
 // On Linux a nice value belongs to a thread, and the threads that it creates inherit it.
@@ -38,6 +39,11 @@ void lower_priority() {
 #endif
 }
 
+struct Wish {
+  std::weak_ptr<const Mesh> mesh;
+  uint32_t threads;
+};
+
 class Queue {
 public:
   // Waits for the thread, when the process ends or unloads the library.
@@ -47,9 +53,9 @@ public:
     ended_.wait(lock, [&] { return !works_; });
   }
 
-  void add(const std::shared_ptr<const Mesh> &mesh) {
+  void add(const Wish &wish) {
     const std::lock_guard lock(mutex_);
-    waiting_.push_back(mesh);
+    waiting_.push_back(wish);
     if (works_)
       return;
     try {
@@ -65,9 +71,10 @@ private:
   void work() {
     prepare_to_fail();
     lower_priority();
-    while (const std::shared_ptr<const Mesh> mesh = next()) {
+    uint32_t threads = 0;
+    while (const std::shared_ptr<const Mesh> mesh = next(threads)) {
       try {
-        make_tree(*mesh, cancel_);
+        make_tree(*mesh, threads, cancel_);
       } catch (const BuildCancelled &) {
         // The process ends.
       } catch (const std::bad_alloc &) {
@@ -77,10 +84,11 @@ private:
   }
 
   // Returns null if the thread must end.
-  std::shared_ptr<const Mesh> next() {
+  std::shared_ptr<const Mesh> next(uint32_t &threads) {
     const std::lock_guard lock(mutex_);
     while (!waiting_.empty() && !cancel_) {
-      const std::shared_ptr<const Mesh> mesh = waiting_.front().lock();
+      const std::shared_ptr<const Mesh> mesh = waiting_.front().mesh.lock();
+      threads = waiting_.front().threads;
       waiting_.pop_front();
       if (mesh)
         return mesh;
@@ -92,16 +100,16 @@ private:
 
   std::mutex mutex_;
   std::condition_variable ended_;
-  std::deque<std::weak_ptr<const Mesh>> waiting_;
+  std::deque<Wish> waiting_;
   std::atomic<bool> cancel_{false};
   bool works_ = false;
 };
 
 } // namespace
 
-void prepare(const std::shared_ptr<const Mesh> &mesh) {
+void prepare(const std::shared_ptr<const Mesh> &mesh, uint32_t threads) {
   static Queue queue;
-  queue.add(mesh);
+  queue.add({mesh, threads});
 }
 
 } // namespace lancer
