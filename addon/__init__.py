@@ -30,7 +30,7 @@ def register():
             "Lancer needs numpy in Blender's Python: install the package python3-numpy (Debian, Ubuntu) or numpy (pip)"
         ) from None
     from . import ui
-    from .engine import preview, render_engine, render_job, results
+    from .engine import kept_pictures, preview, render_engine, render_job, results
     from .host import main_thread, own_library
     from .host.registering import add_all
     from .operators import (
@@ -45,7 +45,7 @@ def register():
     from .settings import manual, preferences, presets, properties
     from .viewport import viewport
 
-    modules = (own_library, properties, preferences, main_thread, results, render_engine, measuring)
+    modules = (own_library, properties, preferences, main_thread, results, kept_pictures, render_engine, measuring)
     modules += (measure_features, measure_quality, check_scene, course_groups, take_over_cycles, presets)
     # render_job unregisters first: it ends a running render while the rest of the add-on is still registered.
     modules += (ui, bug_report, manual, viewport, preview, render_job)

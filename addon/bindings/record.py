@@ -34,6 +34,21 @@ def same(a, b):
     return a == b
 
 
+def bytes_of(*values):
+    """Return the bytes of all arrays inside records, tuples and lists, each array counted once; without those in files."""
+    return sum({id(array): array.nbytes for array in _arrays(values)}.values())
+
+
+def _arrays(value):
+    if isinstance(value, np.ndarray):
+        yield value
+    elif isinstance(value, (tuple, list)):
+        for item in value:
+            yield from _arrays(item)
+    elif hasattr(value, "__dataclass_fields__"):
+        yield from _arrays(tuple(vars(value).values()))
+
+
 class Record:
     """A dataclass with equality of arrays by value."""
 

@@ -3,37 +3,30 @@
 import contextlib
 import dataclasses
 import logging
-import math
 import time
 
 import bpy
-from bpy.app.handlers import persistent
 
 from ..bindings.abi import LancerError
+from ..bindings.record import bytes_of
 from ..bindings.session import Cancelled, Scene, Session
 from ..denoise import view_layer as denoise
-from ..export.kept import Kept
 from ..export.scene import ExportOptions, export_scene
 from ..export.settings import threads_of
 from ..host import main_thread, redraw, shared_scenes
-from ..host.by_scene import ByScene
 from ..host.priority import lowered
-from ..measure import render_report
 from ..measure.scene_features import used_features
-from ..measure.schedule import SAMPLES, TARGET, TIME, Schedule, TimeShare
+from ..measure.schedule import Schedule, TimeShare
 from ..messages.messages import Messages
 from ..messages.severity import Severity
 from ..viewport.viewport import Viewport
-from . import first_look, many_machines, passes, preview, render_export, render_job
+from . import first_look, kept_pictures, many_machines, passes, preview, render_export, render_job
+from .account import account
 from .denoising import Denoising, wishes
 from .picture import Picture
+from .progress_text import progress_text
 from .quick_check import quick_check
-from .results import keep_costs, last_costs, last_messages, last_missing, last_statistics
-
-# Caches of scenes that are animated or have Persistent Data.
-_kept = ByScene()
-# Entries of last_statistics with the library's memory.
-MEMORY = ("geometry_bytes", "accelerator_bytes", "texture_bytes", "film_bytes")
+from .results import last_messages, last_missing, last_statistics
 
 # Seconds between polls.
 _STEP = 0.05
@@ -47,8 +40,10 @@ _SHOW_EVERY = 0.3
 # Share of the time for reading the error.
 _ERROR_SHARE = 0.03
 _MAX_REPORTS = 30
-# Text after the remaining time: the limit that is expected to end the render.
-_REMAINING = {SAMPLES: "", TARGET: " to the target error", TIME: " of the time limit"}
+# Bytes of a snapshot that may stay in memory until the first picture is shown.
+_MOST_KEPT = 1 << 26
+# Seconds of a sample so short that the picture needs no coarse one before it.
+_SHORT = 0.2
 
 
 class LancerRenderEngine(bpy.types.RenderEngine):
@@ -65,6 +60,8 @@ class LancerRenderEngine(bpy.types.RenderEngine):
     _uses = ()
     _gave_up = False
     _ahead = None  # the shared_scenes.Ahead of the export
+    _following = None  # the kept_pictures.Following
+    _later = ()  # functions that need not run before the first picture
     _viewport = None
 
     def update_render_passes(self, scene=None, renderlayer=None):
@@ -91,11 +88,15 @@ class LancerRenderEngine(bpy.types.RenderEngine):
                 scene, view_layer = depsgraph.scene, depsgraph.view_layer_eval
                 layer, wanted = view_layer.name, tuple(passes.render_passes(scene, view_layer))
                 denoising, machines = wishes(scene, view_layer), many_machines.wanted(scene)
-                # The snapshot is complete, and Blender's evaluated data can be larger than the render: free it. The depsgraph
-                # is invalid from here on.
-                self.free_blender_memory()
+                # The snapshot is complete, and Blender's evaluated data can be larger than the render: free it. Do not read the
+                # depsgraph from here on.
+                if self._later:
+                    self._later.append(self.free_blender_memory)
+                else:
+                    self.free_blender_memory()
                 self._guarded(scene, self._render, scene, layer, wanted, denoising, machines)
             self._snapshot = self._ahead = None
+            self._later = []
             if self._is_over():
                 # The remaining layers are not rendered.
                 self._picture = None
@@ -139,10 +140,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             last_messages.pop(scene, None)
             last_missing.pop(scene, None)
             last_statistics.pop(scene, None)
-            if not (self.is_animation or scene.render.use_persistent_data):
-                _kept.pop(scene, None)
-            else:
-                _kept.setdefault(scene, Kept()).next_picture()
+            kept_pictures.begin(scene, self.is_animation)
         self._picture.begin(layer)
 
     def _guarded(self, scene, work, *arguments):
@@ -183,16 +181,40 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         wanted = tuple(passes.render_passes(scene, view_layer))
         self._ahead = shared_scenes.Ahead(threads_of(scene))
         begin = self._ahead.mesh if many_machines.wanted(scene) is None and scene.lancer.accelerator == "BVH" else None
-        options = ExportOptions(self.camera_override, passes.sources(wanted), _kept.get(scene), begin)
+        self._following = self._following or kept_pictures.Following()
+        kept, parts = kept_pictures.of(scene), self._following.take(depsgraph, len(self.get_result().layers))
+        options = ExportOptions(self.camera_override, passes.sources(wanted), None if parts else kept, parts, begin)
         self._snapshot, messages = export_scene(depsgraph, options, self._is_over)
+        if parts is not None:
+            self._following.give_back(parts)
+            kept.count_parts(self._snapshot, parts)
         settings = self._snapshot.settings
         settings = dataclasses.replace(settings, time_limit=self._picture.limit(settings.time_limit))
         if denoise.ready(scene, view_layer):
             settings = denoise.prepared(settings, passes.sources(wanted))
         self._snapshot.set("settings", settings)
-        self._uses = [dataclasses.asdict(feature) for feature in used_features(self._snapshot)]
         self._tell(scene, messages)
-        self._tell(scene, quick_check(scene, self._snapshot, self._is_over))
+        self._postpone(scene)
+
+    def _postpone(self, scene):
+        """Look at the snapshot as a whole: now if it is large, and else while the library renders."""
+        # The upload takes the records out of the snapshot.
+        snapshot = self._snapshot.replaced()
+
+        def find_features():
+            self._uses = [dataclasses.asdict(feature) for feature in used_features(snapshot)]
+
+        def check():
+            self._tell(scene, quick_check(scene, snapshot, self._is_over))
+
+        self._uses, self._later = (), [find_features, check]
+        if kept_pictures.of(scene) is None and bytes_of(snapshot) > _MOST_KEPT:
+            self._do_later()
+
+    def _do_later(self):
+        later, self._later = self._later, []
+        for work in later:
+            work()
 
     def _opened(self, scene, layer, machines):
         """Return a context of the session that renders the snapshot: on this machine, or on others."""
@@ -203,7 +225,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
 
     def _uploaded(self, scene, layer):
         """Return a Session that owns its scene, unless the scene is kept for the next frame."""
-        kept, snapshot = _kept.get(scene), self._snapshot
+        kept, snapshot = kept_pictures.of(scene), self._snapshot
         before = (kept and kept.scenes.get(layer)) or shared_scenes.nearest(snapshot)
         given = {"poll": self._is_over, "before": before, "stock": shared_scenes.stock}
         if kept is None:
@@ -228,7 +250,9 @@ class LancerRenderEngine(bpy.types.RenderEngine):
                 self.end_result(result, cancel=True)
                 raise LancerError(f"Blender expects {result.resolution_x} x {result.resolution_y} pixels, not {expected}")
 
-            look = None if self.is_animation else first_look.FirstLook(session, self._is_over)
+            kept = kept_pictures.of(scene)
+            is_brief = self.is_animation or kept is not None and kept.sample_seconds < _SHORT
+            look = None if is_brief else first_look.FirstLook(session, self._is_over)
             if look and look.coarse is not None:
                 passes.fill(result.layers[0], lambda _: look.coarse, passes.COMBINED)
                 self.update_result(result)
@@ -244,7 +268,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             denoiser = denoising and Denoising(session, denoising, self._is_over, lambda text: self.update_stats("", text))
             schedule = Schedule(session, self._picture.started, denoiser.bound if denoiser and denoising.of_target else None)
             try:
-                self._run(schedule, show)
+                self._run(schedule, show, is_brief or look.coarse is not None)
                 fill()
                 denoised = None
                 if denoiser and not self._is_over():
@@ -254,19 +278,25 @@ class LancerRenderEngine(bpy.types.RenderEngine):
                         self._tell(scene, Messages([denoiser.failure]))
                 if denoised is not None:
                     passes.show_denoised(result.layers[0], denoised)
-                self._account(scene, layer, session, schedule, denoised)
+                self._tell(scene, account(self, scene, layer, session, schedule, denoised, self._uses))
             finally:
                 # Keep the unfinished picture, after Esc too.
                 self.end_result(result)
 
-    def _run(self, schedule, show):
-        """Render range by range and show the picture at intervals, until the schedule ends or the user cancels."""
+    def _run(self, schedule, show, has_time):
+        """Render range by range and show the picture at intervals, until the schedule ends or the user cancels.
+
+        has_time: whether nobody waits for the first picture.
+        """
         showing, reading = TimeShare(_SHOW_SHARE, _SHOW_EVERY), TimeShare(_ERROR_SHARE, _TELL_EVERY)
         told = time.monotonic()
         many_machines.prepare(schedule)
         while schedule.start():
             first = not showing.begun
             while True:
+                if has_time or showing.begun:
+                    with contextlib.suppress(Cancelled):
+                        self._do_later()
                 progress = schedule.wait(_STEP if showing.begun else _FIRST_STEP)
                 if not progress.finished and self._is_over():
                     schedule.cancel()
@@ -279,23 +309,14 @@ class LancerRenderEngine(bpy.types.RenderEngine):
                     told = time.monotonic()
                     if schedule.samples > 1 and reading.due:
                         reading.spend(schedule.look)
-                    self._show_progress(schedule, progress)
+                    self.update_progress(schedule.fraction)
+                    self.update_stats("", progress_text(schedule, progress))
                 if progress.finished:
                     break
             if self._is_over():
                 return
-
-    def _show_progress(self, schedule, progress):
-        self.update_progress(schedule.fraction)
-        rate = progress.rays / progress.seconds / 1e6 if progress.seconds > 0.0 else 0.0
-        seconds, reason = schedule.remaining()
-        samples = progress.samples / schedule.pixels
-        # Small windows cut off the end of the text: the most important part comes first.
-        parts = [f"Remaining {_clock(seconds)}{_REMAINING[reason]}"]
-        if schedule.error is not None and schedule.error.known:
-            parts.append(f"Error {render_report.interval(schedule.error)}")
-        parts += [f"Sample {samples:.0f}/{schedule.settings.samples}", f"{rate:.2f} M rays/s", *many_machines.status(schedule)]
-        self.update_stats("", " | ".join(parts))
+        with contextlib.suppress(Cancelled):
+            self._do_later()
 
     def _tell(self, scene, messages):
         """Report new messages as warnings, except hints, and keep all messages for the panel."""
@@ -308,70 +329,11 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         if len(new) > room:
             self.report({"WARNING"}, f"Lancer: {len(new) - room} more messages are in the render properties")
 
-    def _account(self, scene, layer, session, schedule, denoised):
-        statistics = session.statistics()
-        if statistics.invalid_samples:
-            place = f"({statistics.invalid_x}, {statistics.invalid_y}), sample {statistics.invalid_sample}"
-            count = statistics.invalid_samples
-            text = f"{count} samples were not finite and are left out, the first at pixel {place}"
-            self._tell(scene, Messages([text], Severity.WRONG))
-        numbers = render_report.account(session, schedule)
-        numbers.update(denoise.statistics(denoised))
-        held = sum(numbers[name] for name in MEMORY) / 2**20
-        self.update_memory_stats(memory_used=held, memory_peak=held + numbers["denoising_bytes"] / 2**20)
-        numbers["uses"] = self._uses
-        if scene in _kept:
-            numbers.update(_kept[scene].counts, kept_bytes=_kept[scene].bytes)
-        # Only metadata of the result from get_result reaches the file.
-        stamped = self.get_result()
-        several = len(stamped.layers) > 1
-        lines = numbers["accuracy"] = render_report.lines(numbers, session.settings, layer if several else "")
-        layers = last_statistics.get(scene, {}).get("layers", {})
-        last_statistics[scene] = {**numbers, "layers": {**layers, layer: numbers}}
-        if scene in last_costs:
-            keep_costs(scene, last_costs[scene])
-        for name, value in render_report.fields(numbers, session.settings):
-            stamped.stamp_data_add_field(f"lancer.{layer}.{name}", value)
-        self.update_stats("", lines[0])
-        # In background mode reports go to the terminal; in a window the panel shows these lines.
-        if bpy.app.background:
-            for line in lines:
-                self.report({"INFO"}, f"Lancer: {line}")
-
-
-def _clock(seconds):
-    if not math.isfinite(seconds):
-        return "unknown"
-    minutes, seconds = divmod(int(seconds + 0.5), 60)
-    hours, minutes = divmod(minutes, 60)
-    return f"{hours}:{minutes:02}:{seconds:02}" if hours else f"{minutes:02}:{seconds:02}"
-
-
-@persistent
-def _forget(*_):
-    """Drop all caches before another file is loaded."""
-    _kept.clear()
-
-
-@persistent
-def _forget_kept(scene, *_):
-    """Drop the scene's cache after the last frame, or after Esc."""
-    if not scene.render.use_persistent_data:
-        _kept.pop(scene, None)
-
-
-_HANDLERS = (("load_pre", _forget), ("render_complete", _forget_kept), ("render_cancel", _forget_kept))
-
 
 def register():
     bpy.utils.register_class(LancerRenderEngine)
-    for name, handler in _HANDLERS:
-        getattr(bpy.app.handlers, name).append(handler)
 
 
 def unregister():
     redraw.forget()
-    for name, handler in _HANDLERS:
-        getattr(bpy.app.handlers, name).remove(handler)
     bpy.utils.unregister_class(LancerRenderEngine)
-    _forget()

@@ -19,15 +19,20 @@ _EVEN = 1e-5
 _MESH = int(InstanceKind.MESH)
 
 
-def with_even_normals(meshes, table, geometries, materials):
+def with_even_normals(meshes, table, geometries, materials, known):
     """Return (meshes, table) with other normals for the meshes that Cycles transforms to the world.
 
     geometries: of each name of the table; equal for objects that share one geometry in Cycles. materials: by the table's slots.
+    known: the meshes of the last call, which this call replaces by its own: an equal one is the same object.
     """
     numbers = np.unique(np.array(geometries, np.int64).reshape(-1), return_inverse=True)[1][table.name_indices]
     alone = (np.bincount(numbers)[numbers] == 1) & (table.kinds == _MESH) if len(numbers) else np.zeros(0, bool)
     rows = np.flatnonzero(alone)
     rows = rows[_are_uneven(np.asarray(table.matrices, float)[rows, :, :3])]
+    before = dict(known)
+    known.clear()
+    if not len(rows):
+        return meshes, table
     users = np.bincount(table.meshes[table.kinds == _MESH], minlength=len(meshes))
     result, mesh_numbers = list(meshes), np.array(table.meshes)
     for row in rows.tolist():
@@ -36,7 +41,12 @@ def with_even_normals(meshes, table, geometries, materials):
         # Tangents are computed from the object's own normals, whether or not Cycles transforms the mesh.
         if mesh.normals is None or has_tangents(mesh) or _is_displaced(table, row, materials):
             continue
-        moved = replace(mesh, normals=_divided(mesh.normals, np.asarray(table.matrices[row], float)[:, :3]))
+        matrix = np.asarray(table.matrices[row], float)[:, :3]
+        key = id(mesh), matrix.tobytes()
+        # An entry keeps its mesh, whose address no other mesh then gets.
+        found = before.get(key) or (mesh, replace(mesh, normals=_divided(mesh.normals, matrix)))
+        known[key] = found
+        moved = found[1]
         if users[number] == 1:
             result[number] = moved
         else:
@@ -53,9 +63,21 @@ def _is_displaced(table, row, materials):
 
 def _are_uneven(matrices):
     """Of (n, 3, 3), without those that are flat."""
-    lengths = np.linalg.svd(matrices, compute_uv=False)
+    uneven = np.zeros(len(matrices), bool)
+    # Singular values take long, and most matrices are even at a glance.
+    left = np.flatnonzero(~_are_clearly_even(matrices))
+    lengths = np.linalg.svd(matrices[left], compute_uv=False)
     # A turned matrix of single precision with a scale of 0 is flat up to its rounding.
-    return (lengths[:, 2] > lengths[:, 0] * 2.0**-23) & (lengths[:, 0] > lengths[:, 2] * (1.0 + _EVEN))
+    uneven[left] = (lengths[:, 2] > lengths[:, 0] * 2.0**-23) & (lengths[:, 0] > lengths[:, 2] * (1.0 + _EVEN))
+    return uneven
+
+
+def _are_clearly_even(matrices):
+    """Whether the squares of the singular values differ by less than the limit: by Gershgorin's circles around their mean."""
+    squares = np.einsum("nki,nkj->nij", matrices, matrices)
+    mean = np.trace(squares, axis1=1, axis2=2)[:, None, None] / 3.0
+    radius = np.abs(squares - mean * np.eye(3)).sum(axis=2).max(axis=1)
+    return 2.0 * radius < 0.5 * _EVEN * mean[:, 0, 0]
 
 
 def _divided(normals, matrix):

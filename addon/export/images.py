@@ -2,6 +2,7 @@
 
 import hashlib
 
+import bpy
 import numpy as np
 
 from ..bindings import snapshot
@@ -11,6 +12,7 @@ from ..host.by_scene import identity
 from ..messages.severity import Severity
 from .frames import shown
 from .image_sources import has_cached_file, read_all, read_memory
+from .image_state import image_state
 from .missing import is_black, missing
 from .scratch import Scratch, bytes_in_memory
 
@@ -21,14 +23,19 @@ _NOTHING = snapshot.Image(name="nothing", texels=np.zeros((1, 1, 1), np.uint8))
 class Images:
     """The images that nodes use, by number."""
 
-    def __init__(self, obey=None, kept=None):
-        """obey is called before each file and raises Cancelled if the user cancels. kept: the Kept of earlier frames."""
+    def __init__(self, obey=None, kept=None, watches=False):
+        """obey is called before each file and raises Cancelled if the user cancels. kept: the Kept of earlier frames.
+
+        watches: whether changed() is going to be called.
+        """
         self.list = []
         self.placed = 0  # images so far, those included that are not used any more
         self.obey = obey
         self.frame = 1  # of the scene
         self.is_preview = False  # whether the images are shown in a preview of a material or a world
         self.texture_cache = None  # the scene's TextureCache
+        self.watches = watches
+        self._states = {}  # image_state() by the keys of _ranges
         self._kept = kept
         self._scratch = Scratch()
         self._ranges = {}
@@ -45,6 +52,8 @@ class Images:
         has_mipmaps = not self.is_preview and has_cached_file(self.texture_cache, image, seen)
         key = (identity(image), image.colorspace_settings.name, image.alpha_mode, seen, has_mipmaps)
         if key not in self._ranges:
+            if self.watches:
+                self._states[key] = image_state(image, seen, by_contents=False)
             with main_thread.obeying(self.obey):
                 read = self._reader(read_all, in_memory, has_mipmaps)
                 # Cycles shows unsaved strokes in previews.
@@ -98,11 +107,25 @@ class Images:
             self._tables[key] = self.repeat([snapshot.Image(name="table", texels=texels, alpha=AlphaMode.CHANNEL_PACKED)])
         return self._tables[key]
 
+    def changed(self):
+        """Return the identities of images whose files or settings are others than when their texels were read."""
+        keys = {}
+        for key in self._states:
+            keys.setdefault(key[0], []).append(key)
+        found = set()
+        for image in bpy.data.images if keys else ():
+            own = keys.pop(identity(image), ())
+            # A key has the seen file as its fourth part.
+            if any(self._states[key] is None or self._states[key] != image_state(image, key[3], False) for key in own):
+                found.add(identity(image))
+        return found | set(keys)
+
     def forget(self, changed, used):
         """Drop the images whose identity is in changed and those whose number is not in used."""
         for key, found in list(self._ranges.items()):
             if key[0] in changed or found is not None and found[0] not in used:
                 del self._ranges[key]
+                self._states.pop(key, None)
                 self._lost.discard(key)
         self._tables = {key: number for key, number in self._tables.items() if number in used}
         kept = {number for found in self._ranges.values() if found is not None for number in range(found[0], sum(found))}

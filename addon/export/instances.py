@@ -9,7 +9,6 @@ import numpy as np
 from ..bindings.snapshot import InstanceTable
 from ..messages.severity import Severity
 from .apart import read_infos
-from .flat import report_flat
 from .lights import export_lamp_nodes, export_light
 from .object_attributes import LAMPS_ARE_OBJECTS, AttributeReader, read_object_attributes
 from .objects import Objects
@@ -149,7 +148,7 @@ class Instances:
         infos = None
         if any(self._objects.materials.tell_apart(look.slots) for look in looks):
             infos = read_infos(self.depsgraph.object_instances, entries, _POLL_EVERY, poll)
-        table = InstanceTable(
+        return InstanceTable(
             attributes=self._attributes(look_of, entries, poll),
             matrices=matrices,
             kinds=column([look.kind for look in looks]),
@@ -166,8 +165,6 @@ class Instances:
             slots=slots,
             infos=infos,
         )
-        report_flat(table, self.meshes, self.messages)
-        return table
 
     def _attributes(self, look_of, entries, poll):
         materials = self._objects.materials

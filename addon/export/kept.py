@@ -5,16 +5,16 @@ each frame reads Blender's data again, but computes nothing from equal data and 
 does not use is dropped at the next frame.
 """
 
-import hashlib
-import os
+import math
 
 import bpy
 import numpy as np
 
+from ..bindings.record import bytes_of
 from .arrays import built_in, corner_vertices, look
 from .attributes import attribute_sources, color_attribute, read_uv_map, render_uv_map
+from .image_state import image_state
 from .mesh import face_slots, read_positions
-from .tiles import path_of_tile
 
 _NEW_NORMALS = bpy.app.version >= (4, 1)
 
@@ -27,8 +27,7 @@ class _Entry:
 
     @property
     def bytes(self):
-        """The memory of all arrays, each counted once."""
-        return sum({id(array): array.nbytes for array in _arrays((self.sources, self.value))}.values())
+        return bytes_of(self.sources, self.value)
 
 
 class Kept:
@@ -37,7 +36,9 @@ class Kept:
     def __init__(self):
         self._entries = {}
         self.scenes = {}  # the library's Scene of each view layer, from which the next picture takes what is the same
+        self.sample_seconds = math.inf  # of one sample of the picture before
         self.counts = {}
+        self._others = ()
         self.next_picture()
 
     def next_picture(self):
@@ -48,6 +49,7 @@ class Kept:
                 entry.used = False
             if not left:
                 del self._entries[key]
+        self._others = ()
         self.counts = {"read_meshes": 0, "kept_meshes": 0, "read_images": 0, "kept_images": 0}
 
     def keep_scene(self, layer, scene):
@@ -57,9 +59,16 @@ class Kept:
         if before is not None:
             before.close()
 
+    def count_parts(self, snapshot, parts):
+        """Count the meshes and images that a Parts keeps, instead of entries of this cache."""
+        self._others = snapshot.meshes, snapshot.images
+        for kind, records in zip(("meshes", "images"), self._others, strict=True):
+            read = parts.counts[kind]
+            self.counts |= {f"read_{kind}": read, f"kept_{kind}": max(0, len(records) - read)}
+
     @property
     def bytes(self):
-        return sum(entry.bytes for entries in self._entries.values() for entry in entries)
+        return bytes_of(self._others) + sum(entry.bytes for entries in self._entries.values() for entry in entries)
 
     def meshes(self, export_mesh):
         """Return an export_mesh that looks in the cache first."""
@@ -78,7 +87,8 @@ class Kept:
                 told = []
                 return read_all(image, seen, lambda *given, **named: told.append((given, named))), told
 
-            found, told = self._get("images", (image.name_full, has_mipmaps), _sources_of_image(image, seen), make)
+            key = image.name_full, has_mipmaps, image.has_data
+            found, told = self._get("images", key, image_state(image, seen, by_contents=True), make)
             for given, named in told:
                 tell(*given, **named)
             return found
@@ -117,17 +127,6 @@ def _same(a, b):
 
 def _bits(array):
     return array.view(np.uint32) if array.dtype.itemsize == 4 else array
-
-
-def _arrays(value):
-    """Yield the arrays inside tuples, lists and records."""
-    if isinstance(value, np.ndarray):
-        yield value
-    elif isinstance(value, (tuple, list)):
-        for item in value:
-            yield from _arrays(item)
-    elif hasattr(value, "__dataclass_fields__"):
-        yield from _arrays(tuple(vars(value).values()))
 
 
 def _sources_of_mesh(mesh, wanted, poll):
@@ -177,34 +176,3 @@ def _sources_of_normals(mesh):
         yield None if custom is None else custom.data_type
         yield look(mesh.vertex_normals, "vector", np.float32, 3)
         yield look(mesh.corner_normals, "vector", np.float32, 3)
-
-
-def _sources_of_image(image, seen):
-    """Return the file identity and the settings of an image; None if its pixels can change without changing these."""
-    if image.is_dirty or image.source == "VIEWER":
-        return None
-    settings = (image.source, image.alpha_mode, image.colorspace_settings.name, image.has_data, image.filepath, seen)
-    working = getattr(getattr(bpy.data, "colorspace", None), "working_space", "")
-    if image.source == "GENERATED":
-        made = image.generated_type, *image.generated_color, image.generated_width, image.generated_height, image.is_float
-        return (*settings, working, *made)
-    packed = tuple(item.packed_file for item in image.packed_files) or ((image.packed_file,) if image.packed_file else ())
-    if packed and not seen.path:
-        return (*settings, working, *(hashlib.sha256(item.data).digest() for item in packed if item is not None))
-    files = _files_of(image, seen.path)
-    return None if files is None else (*settings, working, *files)
-
-
-def _files_of(image, path):
-    """Return path, time, size and inode of each file; None if one is missing."""
-    paths = [path or bpy.path.abspath(image.filepath, library=image.library)]
-    if image.source == "TILED":
-        paths = [path_of_tile(image, tile.number) for tile in image.tiles]
-    found = []
-    for path in paths:
-        try:
-            told = os.stat(path)
-        except OSError:
-            return None
-        found.append((path, told.st_mtime_ns, told.st_size, told.st_ino))
-    return found

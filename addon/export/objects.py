@@ -163,7 +163,7 @@ class Objects:
     def _read_mesh(self, thing, owner, name, data_key, is_divided, wanted, poll):
         settings = self._divider.settings(owner)
         if settings is not None:
-            key = data_key, self._divider.key(settings)
+            key = data_key, self._divider.key(settings, owner)
             return self._divided_mesh(thing, owner, None if is_divided else thing.data, name, key, settings, wanted, poll)
 
         def read():

@@ -1,7 +1,7 @@
-"""Incremental export for a window: only data that the depsgraph reports as updated is read again.
+"""Incremental export, for a window and for renders that keep their depsgraph: only data reported as updated is read again.
 
     parts = Parts()
-    snapshot, messages = export_scene(depsgraph, ExportOptions(view=camera, parts=parts))
+    snapshot, messages = export_scene(depsgraph, ExportOptions(parts=parts))
 
 The snapshot is the same as without parts; parts.counts counts what was read for it. Every update of the depsgraph must be
 exported, as a window's view_update does.
@@ -11,8 +11,10 @@ import dataclasses
 from typing import NamedTuple
 
 import bpy
+import numpy as np
 
 from ..host.by_scene import identity
+from .animated import only_moves, traits
 from .images import Images
 from .shader_cache import ShaderCache
 
@@ -23,64 +25,91 @@ class _Mesh(NamedTuple):
     data: object
 
 
+class _Export(NamedTuple):
+    snapshot: object  # without camera and settings
+    messages: object
+    places: object  # the Places of the instances; None if more than they move with objects
+    geometries: list  # of each name of the instance table, see with_even_normals
+    state: object  # of scene and view layer, on which objects and messages depend
+
+
 class Parts:
-    def __init__(self):
-        self.images = Images()
+    def __init__(self, watches=False):
+        """watches: whether images are read again once their files have changed, of which the depsgraph does not tell."""
+        self.images = Images(watches=watches)
         self.shaders = ShaderCache(self.images)
         self.counts = {}
         self._images_before = 0
         self._meshes, self._used_meshes = {}, {}
+        self.even = {}  # of with_even_normals
+        self._traits = {}  # of objects that their animation moves
         self._frame = None
-        self._last = None  # snapshot, Messages and Places of the last export
+        self._last = None  # the _Export before
 
     def read_by(self, cache):
         """Read all images again if the scene's TextureCache has changed."""
         if cache == self.images.texture_cache:
             return
-        self.images = Images()
+        self.images = Images(watches=self.images.watches)
         self.images.texture_cache = cache
         self.shaders = ShaderCache(self.images)
         self._last = None
 
-    def begin(self, depsgraph, obey):
-        """Drop data that has changed since the last export.
+    def begin(self, depsgraph, state, obey):
+        """Drop data that has changed since the last export. state: see _Export.
 
-        Return (snapshot, Messages) if objects have moved and nothing else has changed. Else return None; the caller exports
-        and then calls end().
+        Return (snapshot without camera and settings, Messages, geometries) if objects have moved and nothing else has changed.
+        Else return None; the caller exports and then calls end().
         """
         self._used_meshes = {}
         self.shaders.begin()
         self.counts = dict.fromkeys(("objects", "meshes", "shaders", "images"), 0)
         self._images_before = self.images.placed
         self.images.obey = obey
-        updates = [_Update(update) for update in depsgraph.updates]
-        forgotten = self._forget(updates, depsgraph.scene.frame_current_final)
+        moved, others = _updates(depsgraph)
+        forgotten = self._forget(moved, others, depsgraph.scene.frame_current_final)
+        # Each export remembers the traits of all animated objects.
+        moves_only = [self._moves_only(update) for update in others]
         last, self._last = self._last, None
-        if last is None or forgotten or not updates or not all(update.moves_only for update in updates):
+        if last is None or forgotten or not all(moves_only) or state != last.state:
             return None
-        snapshot, messages, places = last
         # An attribute may be a property that moves with its object.
-        if snapshot.instances.attributes or places is None:
+        if last.snapshot.instances.attributes or last.places is None:
             return None
         try:
-            matrices = places.matrices(depsgraph)
+            matrices = last.places.matrices(depsgraph)
         except (RuntimeError, TypeError):
             # foreach_get fails if the number of entries has changed.
             return None
-        snapshot = snapshot.replaced(instances=dataclasses.replace(snapshot.instances, matrices=matrices))
-        self._last = snapshot, messages, places
-        return snapshot, messages.copy()
+        table = last.snapshot.instances
+        if not np.array_equal(matrices.view(np.uint64), table.matrices.view(np.uint64)):
+            table = dataclasses.replace(table, matrices=matrices)
+        self._last = last._replace(snapshot=last.snapshot.replaced(instances=table))
+        return self._last.snapshot, last.messages.copy(), last.geometries
 
-    def _forget(self, updates, frame):
-        """Drop what the updates change; return whether anything was dropped."""
-        changed = {update.key for update in updates}
-        reshaped = {update.key for update in updates if update.reshapes}
-        moved = {update.key for update in updates if update.moves}
-        pictures = {update.key for update in updates if update.is_picture}
+    def _moves_only(self, update):
+        """Whether an update moves an object at most."""
+        if update.is_animated:
+            # An edit of the object's other properties is reported in the same way.
+            now = traits(update.block)
+            before, self._traits[update.key] = self._traits.get(update.key), now
+            return now == before and not update.reshapes and only_moves(update.block)
+        return update.is_harmless
+
+    def _forget(self, moved, others, frame):
+        """Drop what the updates change; return whether anything was dropped. moved: objects that have only moved."""
+        changed = {update.key for update in others}
+        reshaped = {update.key for update in others if update.reshapes}
+        pictures = {update.key for update in others if update.is_picture} | self.images.changed()
         later, self._frame = frame != self._frame, frame
         before = len(self._meshes)
         self._meshes = {key: mesh for key, mesh in self._meshes.items() if not mesh.owners & reshaped}
-        forgotten = self.shaders.forget(changed, moved, pictures, later)
+
+        def places():
+            return {*map(identity, moved), *(update.key for update in others if update.moves)}
+
+        is_changed = bool(moved or others)
+        forgotten = self.shaders.forget(changed, is_changed, places, pictures, later)
         if pictures:
             self.images.forget(pictures, self.shaders.numbers())
         return forgotten or before != len(self._meshes)
@@ -101,29 +130,45 @@ class Parts:
     def count(self, kind):
         self.counts[kind] += 1
 
-    def end(self, snapshot, messages, places):
-        """Keep the data that this export has used, and drop the rest.
-
-        places: the Places of the instances; None if more than they move with objects.
-        """
+    def end(self, snapshot, messages, places, geometries, state):
+        """Keep the data that this export has used, and drop the rest. The arguments are the fields of an _Export."""
         self.counts.update(shaders=self.shaders.count, images=self.images.placed - self._images_before)
         self._meshes, self._used_meshes = self._used_meshes, {}
         self.shaders.end()
         self.images.forget((), self.shaders.numbers())
-        self._last = snapshot, messages.copy(), places
+        self._last = _Export(snapshot, messages.copy(), places, geometries, state)
+
+
+def _updates(depsgraph):
+    """Return the objects of a depsgraph's updates that have only moved, and the other updates as _Updates."""
+    updates = depsgraph.updates
+    flags = [np.zeros(len(updates), bool) for _ in range(3)]
+    for name, values in zip(("transform", "geometry", "shading"), flags, strict=True):
+        updates.foreach_get(f"is_updated_{name}", values)
+    moved, others = [], []
+    for update, moves, reshapes, shades in zip(updates, *(values.tolist() for values in flags), strict=True):
+        block = update.id
+        # A lamp's light depends on its transform and must be read again.
+        is_object = isinstance(block, bpy.types.Object) and block.type != "LIGHT"
+        if is_object and moves and not (reshapes or shades):
+            moved.append(block)
+        else:
+            others.append(_Update(block, is_object, moves, reshapes, shades))
+    return moved, others
 
 
 class _Update:
-    """One update of the depsgraph, classified for the export."""
+    """One update of the depsgraph, classified for the export. is_object: not for lamps."""
 
-    def __init__(self, update):
-        block = update.id
-        is_object = isinstance(block, bpy.types.Object)
+    def __init__(self, block, is_object, moves, reshapes, shades):
         self.key = identity(block)
         self.is_picture = isinstance(block, bpy.types.Image)
-        self.moves = update.is_updated_transform
+        self.moves = moves
         # A new material updates the shading of all its objects and meshes, not their geometry.
-        self.reshapes = update.is_updated_geometry
-        # A lamp's light depends on its transform and must be read again.
-        is_lamp = is_object and block.type == "LIGHT"
-        self.moves_only = is_object and self.moves and not (self.reshapes or update.is_updated_shading or is_lamp)
+        self.reshapes = reshapes
+        # An object with an action is reported as shaded anew in each frame.
+        self.is_animated = is_object and shades and block.animation_data is not None
+        # Each export reads the camera and compares the scene's state, and the objects of an action are reported themselves.
+        self.is_harmless = isinstance(block, (bpy.types.Action, bpy.types.Camera, bpy.types.Scene))
+        # Evaluated data lives as long as the depsgraph is not evaluated again.
+        self.block = block

@@ -8,9 +8,11 @@ from ..bindings.snapshot import SceneSnapshot
 from ..messages.messages import Messages
 from .camera import export_camera
 from .even_normals import with_even_normals
+from .flat import report_flat
 from .images import Images
 from .instances import Instances
 from .materials import Materials
+from .scene_state import scene_state
 from .settings import export_settings, world_of
 from .shader_cache import ShaderCache
 from .subdivision.divider import Divider
@@ -24,13 +26,14 @@ class ExportOptions:
     camera: object = None  # the camera object; None is the scene's
     passes: tuple = (Pass.COMBINED,)
     kept: object = None  # the Kept of earlier frames
+    parts: object = None  # the Parts of earlier exports
     on_mesh: object = None  # is called with each MeshData as soon as it is read
     is_preview: bool = False  # of a material, a world or a lamp
     # For a window:
     view: object = None  # a snapshot.Camera that replaces the camera object
     dicing: object = None  # the snapshot.Camera by whose pixels meshes are divided
     space: object = None  # the SpaceView3D, whose local view and filters exclude objects
-    parts: object = None  # the Parts of earlier exports
+    sight: object = None  # a value that differs if the space excludes other objects
 
 
 def export_scene(depsgraph, options=None, poll=None):
@@ -60,11 +63,12 @@ def export_scene(depsgraph, options=None, poll=None):
     parts, cache = options.parts, texture_cache(scene)
     if parts is not None:
         parts.read_by(cache)
-        again = parts.begin(depsgraph, obey)
+        state = scene_state(depsgraph), options.sight, messages.lines()
+        again = parts.begin(depsgraph, state, obey)
         if again is not None:
             # The messages of the last export include those of the checks above, which have not changed.
-            snapshot, messages = again
-            return snapshot.replaced(camera=camera, settings=settings), messages
+            snapshot, messages, geometries = again
+            return _placed(snapshot, geometries, messages, options, camera, settings), messages
     images = Images(obey, options.kept) if parts is None else parts.images
     images.frame, images.is_preview, images.texture_cache = scene.frame_current, options.is_preview, cache
     shaders = ShaderCache(images) if parts is None else parts.shaders
@@ -79,22 +83,29 @@ def export_scene(depsgraph, options=None, poll=None):
 
     sky = world if view_layer.use_sky else None
     exported = export_world(None, images, depsgraph, messages) if sky is None else shaders.find(sky, messages, read_sky)
-    table, meshes = instances.to_table(obey), instances.meshes
-    # Only final renders of Cycles transform meshes to the world, which changes normals.
-    if parts is None:
-        meshes, table = with_even_normals(meshes, table, instances.geometries, materials.list)
     snapshot = SceneSnapshot(
-        meshes=tuple(meshes),
-        instances=table,
+        meshes=tuple(instances.meshes),
+        instances=instances.to_table(obey),
         materials=tuple(materials.list),
         lights=tuple(instances.lights),
         images=tuple(images.list),
         world=exported.world,
-        camera=camera,
-        settings=settings,
     )
     obey()
     if parts is not None:
-        # The instance of a lamp moves with its instancer.
-        parts.end(snapshot, messages, None if instances.has_lamp_instances else instances.places)
-    return snapshot, messages
+        # The instance of a lamp moves with its instancer; the size of an object decides how it is divided.
+        moves_freely = not (instances.has_lamp_instances or divider.depends_on_places)
+        parts.end(snapshot, messages, instances.places if moves_freely else None, instances.geometries, state)
+    return _placed(snapshot, instances.geometries, messages, options, camera, settings), messages
+
+
+def _placed(snapshot, geometries, messages, options, camera, settings):
+    """Return the snapshot with all that follows from the places of its objects; geometries: see with_even_normals."""
+    snapshot = snapshot.replaced(camera=camera, settings=settings)
+    report_flat(snapshot.instances, snapshot.meshes, messages)
+    if options.view is not None:
+        return snapshot
+    # Only final renders of Cycles transform meshes to the world, which changes normals.
+    known = {} if options.parts is None else options.parts.even
+    meshes, table = with_even_normals(snapshot.meshes, snapshot.instances, geometries, snapshot.materials, known)
+    return snapshot.replaced(meshes=tuple(meshes), instances=table)

@@ -136,14 +136,19 @@ class ShaderCache:
         shader = _Shader(exported, told, pictures, numbers, asked.with_time or exported.sources.time)
         return tuple(facts), tuple(facts.values()), shader
 
-    def forget(self, changed, moved, pictures, later):
-        """Drop results that depend on changed data; return whether there were any. later: another frame is shown."""
+    def forget(self, changed, is_changed, moved, pictures, later):
+        """Drop results that depend on changed data; return whether there were any.
+
+        changed: identities of data-blocks, without objects that have only moved. is_changed: whether anything has changed.
+        moved() returns the identities of all objects that have moved. later: another frame is shown.
+        """
         before = len(self._all())
         texts = _Texts()
 
         def is_kept(shader):
             sources = shader.exported.sources
-            by_others = shader.pictures & pictures or sources.objects & moved or changed and sources.layer
+            by_objects = sources.objects and sources.objects & moved()
+            by_others = shader.pictures & pictures or by_objects or is_changed and sources.layer
             return not (by_others or shader.with_time and later) and all(map(texts.has, sources.texts))
 
         self._known = {key: variants for key, variants in self._known.items() if key not in changed}

@@ -99,6 +99,7 @@ class Viewport:
             dicing=None if view is None else view.camera,
             passes=(Pass.COMBINED,),
             space=context.space_data,
+            sight=self._sight,
             parts=self._parts,
         )
         contents, messages = export_scene(depsgraph, options)

@@ -25,6 +25,7 @@ ELSEWHERE = {
 }
 # Names in the export's source that are also names of settings without effect on this test's scene.
 OF_OTHERS = {
+    "action": "of animated objects; of the display of a camera's safe areas",
     "blocker_collection": "light linking, told as not supported",
     "clip_max_y": "of curves of nodes",
     "clip_min_y": "of curves of nodes",
@@ -32,6 +33,7 @@ OF_OTHERS = {
     "denoising_pass_follow_reflections": "told as not supported, with passes for denoising",
     "denoising_pass_use_albedo_roughness_weighting": "told as not supported, with passes for denoising",
     "denoiser": "of the library that denoises",
+    "exclude": "of collections, in the Outliner",
     "exposure": "of lamps; of the display in Blenders whose lamps have none",
     "extend": "a list's method; of curves' display",
     "feature_set": "without effect since 5.0",
@@ -54,6 +56,8 @@ OF_OTHERS = {
     "metallic": "a socket of a shader node",
     "receiver_collection": "light linking, told as not supported",
     "shading_system": "of scripts, told as not supported",
+    "show_instancer_for_render": "of instancers, whose own surface the depsgraph leaves out",
+    "show_instancer_for_viewport": "of instancers, whose own surface the depsgraph leaves out",
     "shadow_terminator_offset": "told as not supported, in the Blenders that keep it in Cycles",
     "title": "a string's method; of the display's safe areas",
     "texture_limit": "told as not supported, in views",

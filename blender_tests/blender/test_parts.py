@@ -11,7 +11,8 @@ MOVED, WALKED = (0, 0, 0, 0), (7, 0, 0, 0)
 MESH, SHADER, SHADER_AND_PICTURE = (7, 1, 0, 0), (7, 0, 1, 0), (7, 0, 1, 1)
 EXPECTED = {
     "first": ALL,
-    "nothing": WALKED,
+    # The cursor belongs to the scene, whose update does not name it.
+    "nothing": MOVED,
     "moved object": MOVED,
     "moved twice": MOVED,
     "moved camera": MOVED,
@@ -69,6 +70,19 @@ def test_edits_of_lamps(which, tmp_path):
 
 
 @pytest.mark.parametrize("which", [MODULE, PROGRAM])
+def test_edits_between_pictures(which, tmp_path):
+    """With Persistent Data a picture reads only what has changed since the one before, and moved objects at once."""
+    got = blenders.run(which, tmp_path, "parts_cases", "pictures")
+    got.pop("console")
+    assert not [name for name, result in got.items() if not result[1]], "another snapshot than that of an export of everything"
+    assert not [name for name, result in got.items() if not result[2]], "other messages"
+    moves = {name for name, result in got.items() if not any(result[0].values())}
+    # Without surfaces there is no object to read.
+    still = {"nothing", "output path", "no surfaces", "collection"}
+    assert moves == {*still, "moved object", "stretched object", "moved camera", "frame", "frame again"}
+
+
+@pytest.mark.parametrize("which", [MODULE, PROGRAM])
 def test_images_do_not_accumulate(which, tmp_path):
     """Lamps share the table of a text, and later tables take the places of those not used any more."""
     got = blenders.run(which, tmp_path, "lamp_edit_cases", "growth")
@@ -84,7 +98,9 @@ def test_frames_keep_what_does_not_change(which, tmp_path, persistent):
     got = blenders.run(which, tmp_path, "kept_cases", "frames", persistent)
     # A render of a single frame has no cache and no counts.
     assert got["alone"] == [[None] * 4] * 3
-    assert got["counts"] == [[9, 0, 2, 0], [4, 5, 1, 1], [4, 5, 1, 1]]
+    # Blender reports the new material of an object as a change of its shape, which only a cache that compares sees through.
+    read = 5 if persistent == "yes" else 4
+    assert got["counts"] == [[9, 0, 2, 0], *[[read, 9 - read, 1, 1]] * 2]
     assert min(got["bytes"]) > 0 and min(got["changes"]) > 0.01
     assert got["differences"] == [0.0] * 3
     # Persistent Data keeps the cache for the next render, but not for another file.

@@ -74,12 +74,27 @@ class Divider:
             return True
         return maker.original != owner.original and thing.data == owner.data
 
-    def key(self, settings):
-        """Return what the mesh depends on besides Blender's data."""
+    @property
+    def depends_on_places(self):
+        """Whether an object is divided anew once its place or that of the camera changes."""
+        return not self._in_view and any(found is not None and found.in_pixels for found in self._settings.values())
+
+    def key(self, settings, owner):
+        """Return what the mesh of an evaluated object depends on besides Blender's data."""
         if not settings.in_pixels or self._in_view and self._chosen is None:
             return settings
         camera = self._camera
-        return settings, camera.matrix.tobytes(), camera.window, camera.width, camera.height, camera.kind, camera.panorama
+        place = None if self._in_view else tuple(map(tuple, owner.matrix_world))
+        return (
+            settings,
+            place,
+            camera.matrix.tobytes(),
+            camera.window,
+            camera.width,
+            camera.height,
+            camera.kind,
+            camera.panorama,
+        )
 
     def mesh(self, owner, made, settings, name, wanted, poll):
         """Return the MeshData of an evaluated object, or of a mesh that its Geometry Nodes made for its instances.

@@ -82,17 +82,16 @@ def biases():
 
 def broken_off():
     """A render cancelled as by Esc, once an error estimate is available."""
-    ours = engine.LancerRenderEngine
-    original = ours._show_progress
+    original = engine.progress_text
 
-    def show(self, schedule, progress):
-        original(self, schedule, progress)
+    def told(schedule, progress):
         if schedule.error is not None and schedule.error.known:
             schedule.cancel()
+        return original(schedule, progress)
 
-    ours._show_progress = show
+    engine.progress_text = told
     try:
         result = _rendered(_noisy(samples=1 << 24, time_limit=60.0))
     finally:
-        ours._show_progress = original
+        engine.progress_text = original
     return {**result, "lines": engine.last_statistics[bpy.context.scene.name]["accuracy"]}

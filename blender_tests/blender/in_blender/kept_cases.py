@@ -123,7 +123,7 @@ def frames(persistent):
     finally:
         bpy.app.handlers.frame_change_pre.remove(change)
         bpy.app.handlers.render_post.remove(count)
-    left = len(addon.engine.render_engine._kept)
+    left = len(addon.engine.kept_pictures._kept)
     together = [_read(os.path.join(folder, f"frame_{frame:04d}.exr")) for frame in FRAMES]
     changes = [float(np.abs(a - b).max()) for a, b in zip(together, together[1:], strict=False)]
     differences = [float(np.abs(a - b).max()) for a, b in zip(alone, together, strict=True)]
@@ -135,5 +135,5 @@ def frames(persistent):
         "differences": differences,
         "changes": changes,
         "left": left,
-        "after another file": len(addon.engine.render_engine._kept),
+        "after another file": len(addon.engine.kept_pictures._kept),
     }

@@ -9,7 +9,7 @@ import stage
 
 def _variants(context):
     """Yield the name of each state that the context and the scene are put into."""
-    from addon.engine import render_engine as engine
+    from addon import engine
     from addon.measure.costs import Cost, Costs
     from addon.operators import measuring
     from addon.viewport import viewport

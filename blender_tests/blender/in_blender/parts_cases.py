@@ -180,12 +180,14 @@ class Window:
 def _plain(given):
     """Return the snapshot with images, materials and meshes in place of their indices, which may differ."""
     table = given.instances
+    columns = [table.kinds, table.object_indices, table.shadings, table.hidden_from, table.flags, table.terminators]
+    values = [column.tolist() for column in (*columns, *(() if table.infos is None else [table.infos]))]
     rows = [
         (given.meshes[mesh], tuple(_material(given, table.slots[first + i]) for i in range(count)), matrix.tolist())
         for mesh, first, count, matrix in zip(table.meshes, table.first_slots, table.slot_counts, table.matrices, strict=True)
     ]
     lights = [_with_pictures(given, light) for light in given.lights]
-    return rows, table.attributes, lights, _with_pictures(given, given.world), given.settings
+    return rows, values, table.attributes, lights, _with_pictures(given, given.world), given.settings
 
 
 def _material(given, number):
@@ -267,3 +269,104 @@ def property_edits():
     of_objects = results(_EDITS_OF_OBJECTS)
     _box(2, "Layered", _named("VIEW_LAYER", "heat"))
     return {**results(_EDITS_OF_THE_LAYER), **of_objects}
+
+
+def _animate(name, path, first, last):
+    thing = bpy.data.objects[name]
+    for frame, value in ((1, first), (3, last)):
+        setattr(thing, path, value)
+        thing.keyframe_insert(path, frame=frame)
+
+
+def _later():
+    bpy.context.scene.frame_set(bpy.context.scene.frame_current % 3 + 1)
+
+
+def _add():
+    twin = bpy.data.objects["Other"].copy()
+    twin.location.x = 8.0
+    bpy.context.scene.collection.objects.link(twin)
+
+
+def _collect():
+    collection = bpy.data.collections.new("Lone")
+    bpy.context.scene.collection.children.link(collection)
+    collection.objects.link(bpy.data.objects["Lone"])
+    bpy.context.scene.collection.objects.unlink(bpy.data.objects["Lone"])
+
+
+def _shape():
+    """Set a property of the add-on as a panel does: a script's change is not reported."""
+    bpy.data.objects["Twin"].lancer.shape = "SPHERE"
+    bpy.data.objects["Twin"].update_tag()
+
+
+def _both_at_once():
+    _later()
+    bpy.data.objects["Pictured"].visible_camera = False
+
+
+# The counts of objects, meshes and shaders that a picture with Persistent Data reads after each edit.
+_EDITS_OF_PICTURES = {
+    "nothing": lambda: None,
+    "output path": _set("scene.render.filepath", "//other"),
+    "moved object": _set("objects['Lone'].location", (6, 1, 0)),
+    "stretched object": _set("objects['Lone'].scale", (1, 1, 3)),
+    "moved camera": _set("objects['Camera'].location", (1, -6, 3)),
+    "edited material": _edit_material,
+    "edited mesh": _edit_mesh,
+    "edited lamp": _set("bpy.data.lights[0].energy", 50.0),
+    "hidden object": _set("objects['Other'].hide_render", True),
+    "shown object": _set("objects['Other'].hide_render", False),
+    "object index": _set("objects['Twin'].pass_index", 3),
+    "shape": _shape,
+    "another world": lambda: setattr(bpy.context.scene, "world", bpy.data.worlds.new("Another")),
+    "no surfaces": _set("bpy.context.view_layer.use_solid", False),
+    "collection": _collect,
+    "surfaces": _set("bpy.context.view_layer.use_solid", True),
+    "holdout": _set("bpy.context.view_layer.layer_collection.children[0].holdout", True),
+    "excluded": _set("bpy.context.view_layer.layer_collection.children[0].exclude", True),
+    "removed object": lambda: bpy.data.objects.remove(bpy.data.objects["Placed"]),
+    "added object": _add,
+    "keyed": lambda: _animate("Pictured", "location", (2, 0, 0), (2, 2, 0)),
+    "frame": _later,
+    "frame again": _later,
+    "frame and edit": _both_at_once,
+    "keyed index": lambda: _animate("Pictured", "pass_index", 1, 5),
+    "frame with index": _later,
+    "moved for a while": _set("objects['Pictured'].delta_location", (0, 0, 1)),
+}
+
+
+def pictures():
+    """Press F12 with Persistent Data after each edit. Return {edit: (counts, same snapshot, same messages)}.
+
+    Each export is compared with one of everything from the same depsgraph.
+    """
+    from addon.engine import render_engine
+
+    scene = _build()
+    # The shape key would change a mesh in each frame.
+    bpy.data.objects["Keyed"].shape_key_clear()
+    scene.render.resolution_x = scene.render.resolution_y = 8
+    scene.lancer.samples = 1
+    scene.render.use_persistent_data = True
+    compared, results = [], {}
+
+    def export(depsgraph, options, poll):
+        got, messages = export_scene(depsgraph, options, poll)
+        whole, others = export_scene(depsgraph, dataclasses.replace(options, parts=None, on_mesh=None), poll)
+        same = messages.lines() == others.lines()
+        compared.append((options.parts and dict(options.parts.counts), _plain(got) == _plain(whole), same))
+        return got, messages
+
+    render_engine.export_scene = export
+    try:
+        for name, edit in {"first": lambda: None, **_EDITS_OF_PICTURES}.items():
+            edit()
+            bpy.ops.render.render()
+            (results[name],) = compared
+            compared.clear()
+    finally:
+        render_engine.export_scene = export_scene
+    return results

@@ -21,7 +21,8 @@ def _glassy(samples=4):
 
 
 def statistics():
-    from addon.engine import render_engine as engine
+    from addon import engine
+    from addon.engine.account import MEMORY
 
     scene = _glassy()
     image = bpy.data.images.new("Checks", 16, 16)
@@ -35,7 +36,7 @@ def statistics():
     numbers = engine.last_statistics[scene.name]
     return {
         "uses": numbers["uses"],
-        "memory": {name: numbers[name] for name in engine.MEMORY},
+        "memory": {name: numbers[name] for name in MEMORY},
         "costs": numbers.get("feature_costs"),
     }
 
@@ -57,7 +58,7 @@ def plain_data():
 
 def measured():
     """Run the operator without a window. Return its results, the kept results, and whether the file is unchanged."""
-    from addon.engine import render_engine as engine
+    from addon import engine
     from addon.operators import measure_features
 
     scene = _glassy()

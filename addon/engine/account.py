@@ -1,0 +1,53 @@
+"""The account of a rendered view layer: in the file's metadata, in engine.last_statistics, and as lines for the user."""
+
+import bpy
+
+from ..denoise import view_layer as denoise
+from ..measure import render_report
+from ..messages.messages import Messages
+from ..messages.severity import Severity
+from . import kept_pictures
+from .results import keep_costs, last_costs, last_statistics
+
+# Entries of last_statistics with the library's memory.
+MEMORY = ("geometry_bytes", "accelerator_bytes", "texture_bytes", "film_bytes")
+
+
+def account(engine, scene, layer, session, schedule, denoised, uses):
+    """Store and show the figures of a view layer, and return Messages about samples that are left out.
+
+    denoised: the denoised picture, or None; uses: the features of the scene.
+    """
+    numbers = render_report.account(session, schedule)
+    numbers.update(denoise.statistics(denoised))
+    held = sum(numbers[name] for name in MEMORY) / 2**20
+    engine.update_memory_stats(memory_used=held, memory_peak=held + numbers["denoising_bytes"] / 2**20)
+    numbers["uses"] = uses
+    kept = kept_pictures.of(scene)
+    if kept is not None:
+        kept.sample_seconds = numbers["seconds"] / max(1, schedule.samples)
+        numbers.update(kept.counts, kept_bytes=kept.bytes)
+    # Only metadata of the result from get_result reaches the file.
+    stamped = engine.get_result()
+    several = len(stamped.layers) > 1
+    lines = numbers["accuracy"] = render_report.lines(numbers, session.settings, layer if several else "")
+    layers = last_statistics.get(scene, {}).get("layers", {})
+    last_statistics[scene] = {**numbers, "layers": {**layers, layer: numbers}}
+    if scene in last_costs:
+        keep_costs(scene, last_costs[scene])
+    for name, value in render_report.fields(numbers, session.settings):
+        stamped.stamp_data_add_field(f"lancer.{layer}.{name}", value)
+    engine.update_stats("", lines[0])
+    # In background mode reports go to the terminal; in a window the panel shows these lines.
+    if bpy.app.background:
+        for line in lines:
+            engine.report({"INFO"}, f"Lancer: {line}")
+    return _of_invalid(numbers)
+
+
+def _of_invalid(numbers):
+    count = numbers["invalid_samples"]
+    if not count:
+        return Messages()
+    place = f"({numbers['invalid_x']}, {numbers['invalid_y']}), sample {numbers['invalid_sample']}"
+    return Messages([f"{count} samples were not finite and are left out, the first at pixel {place}"], Severity.WRONG)
