@@ -56,6 +56,10 @@ class Stock:
                 _add(self._by_key, key, part)
         return part, True
 
+    def known(self, kind, record):
+        """Return the equal record of a Part of a mesh or an image; the record itself if there is none."""
+        return next((part.record for part in _living(self._by_key, key_of(kind, record)) if part.record == record), record)
+
     def _find(self, kind, record, images):
         for part in _living(self._by_identity, id(record)):
             if part.record is record and part.reads(images):

@@ -6,8 +6,8 @@ import bpy
 import numpy as np
 
 from ..bindings import snapshot
-from ..bindings.enums import AlphaMode
-from ..host import main_thread
+from ..bindings.enums import AlphaMode, ObjectKind
+from ..host import main_thread, shared_scenes
 from ..host.by_scene import identity
 from ..messages.severity import Severity
 from .frames import shown
@@ -96,7 +96,7 @@ class Images:
                 numbers = range(number, number + len(pictures))
                 break
         self._free.difference_update(numbers)
-        self.list[numbers.start : numbers.stop] = pictures
+        self.list[numbers.start : numbers.stop] = [shared_scenes.stock.known(ObjectKind.IMAGE, picture) for picture in pictures]
         self.placed += len(pictures)
         return numbers.start
 

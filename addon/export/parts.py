@@ -13,6 +13,8 @@ from typing import NamedTuple
 import bpy
 import numpy as np
 
+from ..bindings.enums import ObjectKind
+from ..host import shared_scenes
 from ..host.by_scene import identity
 from .animated import only_moves, traits
 from .images import Images
@@ -123,7 +125,8 @@ class Parts:
         found = self._meshes.get(key)
         if found is None or found.size != size:
             self.count("meshes")
-            found = _Mesh(owners, size, read())
+            # The views of one scene hold one copy of each mesh.
+            found = _Mesh(owners, size, shared_scenes.stock.known(ObjectKind.MESH, read()))
         self._used_meshes[key] = found._replace(owners=found.owners | owners)
         return found.data
 

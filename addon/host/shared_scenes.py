@@ -18,11 +18,13 @@ class Ahead:
 
     def __init__(self, threads):
         self._threads = threads
+        # Finding the library reads folders, which takes as long as a small mesh.
+        self._library = load_library()
         self._parts = []
         self._made = []
 
     def mesh(self, record):
-        part, made = stock.part(load_library(), ObjectKind.MESH, record, threads=self._threads)
+        part, made = stock.part(self._library, ObjectKind.MESH, record, threads=self._threads)
         (self._made if made else self._parts).append(part)
 
     def end(self):

@@ -3,7 +3,7 @@
 import math
 
 # Longest seconds of the first picture after a change, and of each finer one before the finest.
-_FIRST, _NEXT = 0.07, 0.25
+_FIRST, _NEXT = 0.03, 0.25
 # Weight of the last measured speed in the running mean: views differ in speed.
 _NEWEST = 0.5
 

@@ -1,6 +1,7 @@
 """One 3D view in Rendered shading: passes Blender's updates to a painter and draws the newest picture."""
 
 import logging
+import time
 import weakref
 
 import bpy
@@ -26,6 +27,11 @@ from .sizes import coarsest
 last_messages = ByScene()
 
 _TICK = 0.005  # seconds between two steps
+# Seconds from an edit for which a drawing waits for the first picture, and between two steps meanwhile. Blender draws a window
+# as a whole, which may take longer: the picture of the next drawing would be seen that much later.
+_PATIENCE, _NAP = 0.045, 0.001
+# Edits without waiting after one that was in vain: doubled each time up to this number.
+_MOST_SKIPPED = 16
 _MANY = 1 << 24
 # Settings that affect the building of the library's scene.
 _BUILT_BY = ("accelerator", "threads")
@@ -47,12 +53,15 @@ class Viewport:
         self._messages = Messages()  # the entry in last_messages
         self._library = None  # the painter's messages that are already in _messages
         self._drawn = None  # (ViewPicture, failure) on the screen
+        self._edited = 0.0  # time of the last update
+        self._skip = self._skipped = 0  # edits for which no drawing waits: after each in vain, and of these so far
         self.painter = Painter()
         weakref.finalize(self, self.painter.close)
         _open.add(self)
 
     def update(self, context, depsgraph):
         """Export the changes of the depsgraph."""
+        self._edited = time.monotonic()
         try:
             self._export(context, depsgraph)
             self._failure = ""
@@ -151,9 +160,29 @@ class Viewport:
         most = coarsest(view.rectangle, finest, own.preview_start_resolution)
         wanted = Wanted(self._contents, settings, view, finest, most, denoising)
         if self._wanted is None or not _same(wanted, self._wanted):
+            edited = self._wanted is not None and self._wanted.contents is not wanted.contents
             self._wanted = wanted
             self.painter.want(wanted)
             self.painter.step()
+            if edited:
+                self._wait()
+
+    def _wait(self):
+        """Wait a moment for the first picture of an edited scene, unless the pictures of the last edits took longer."""
+        if self.painter.picture is None or self.painter.waits:
+            return
+        if self._skipped < self._skip:
+            self._skipped += 1
+            return
+        end = self._edited + _PATIENCE
+        while not (shows := self._shows_edits()) and self.painter.is_busy and time.monotonic() < end:
+            time.sleep(_NAP)
+            self.painter.step()
+        in_vain = not shows and self.painter.is_busy
+        self._skip, self._skipped = min(_MOST_SKIPPED, 2 * self._skip + 1) if in_vain else 0, 0
+
+    def _shows_edits(self):
+        return self.painter.picture.wanted.contents is self._wanted.contents
 
     def _text(self, picture):
         failure = self._failure or self._blindness or self.painter.failure

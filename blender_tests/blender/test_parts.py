@@ -72,7 +72,7 @@ def test_edits_of_lamps(which, tmp_path):
 @pytest.mark.parametrize("which", [MODULE, PROGRAM])
 def test_edits_between_pictures(which, tmp_path):
     """With Persistent Data a picture reads only what has changed since the one before, and moved objects at once."""
-    got = blenders.run(which, tmp_path, "parts_cases", "pictures")
+    got = blenders.run(which, tmp_path, "picture_edit_cases", "pictures")
     got.pop("console")
     assert not [name for name, result in got.items() if not result[1]], "another snapshot than that of an export of everything"
     assert not [name for name, result in got.items() if not result[2]], "other messages"
@@ -105,3 +105,16 @@ def test_frames_keep_what_does_not_change(which, tmp_path, persistent):
     assert got["differences"] == [0.0] * 3
     # Persistent Data keeps the cache for the next render, but not for another file.
     assert got["left"] == (1 if persistent == "yes" else 0) and got["after another file"] == 0
+
+
+@pytest.mark.parametrize("which", [MODULE, PROGRAM])
+@pytest.mark.parametrize("persistent", ["no", "yes"])
+def test_a_long_animation_takes_no_more_memory(which, tmp_path, persistent):
+    """In each of 100 frames a mesh, a material and particles change.
+
+    From frame 30 on there are as many particles. A frame's mesh is 0.6 MB; 40 meshes of a leak would be 24 MB.
+    """
+    got = blenders.run(which, tmp_path, "kept_cases", "long", persistent, "100")
+    given = got["given"]
+    assert len(given) == 100 and max(given[90:]) - max(given[40:50]) < 2**20
+    assert got["differences"] == [0.0] * 3 and min(got["changes"]) > 0.01

@@ -107,6 +107,12 @@ def test_edits_show_the_last_picture_until_the_new_one_is_there(window):
     assert [name for name, result in got.items() if not result["rebuilt"]] == ["film", "bounces", "turned"]
 
 
+def test_a_drawing_waits_for_the_first_picture_of_an_edit(window):
+    """After a wait in vain the next edit is drawn without one, and the edit after that with one."""
+    got = window("waits")
+    assert got == {"long": [True, 0], "not": [False, 1], "skipped": [False, 1], "long again": [True, 0]}
+
+
 def test_what_changes_no_picture_renders_nothing(window):
     assert window("selects") == {"same": True}
 
@@ -175,6 +181,15 @@ def test_an_animation_plays(window):
     assert got["frames"] > 2 and got["at"] > 2
     # Curves move an object, and nothing is read again.
     assert got["read"] == {"objects": 0, "meshes": 0, "shaders": 0, "images": 0}
+
+
+def test_two_views_and_a_render_share_the_scene(window):
+    """The second view adds its pictures and what Blender and Python allocate, no copy of the scene."""
+    got = window("shared")
+    parts, records = got["common"]
+    # Five meshes, four materials that all read alike, a lamp and the world.
+    assert parts > 5 and records == 5
+    assert got["scene"] > 20.0 and got["second"] < 0.2 * got["scene"]
 
 
 def test_changing_the_size_of_a_view_leaks_no_copy_of_the_scene(window):

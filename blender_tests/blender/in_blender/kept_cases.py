@@ -4,6 +4,7 @@ import os
 import tempfile
 
 import bpy
+import memory_now
 import numpy as np
 import stage
 
@@ -90,6 +91,66 @@ def _build(folder):
         os.utime(changed, ns=(frame * 10**9, frame * 10**9))
 
     return scene, change
+
+
+def _long(count):
+    """Build meshes, a material and particles that change in each frame, up to that frame."""
+    scene = stage.empty(8, 8, 1)
+    ground = stage.plane(4.0, stage.shader(Color=(0.6, 0.6, 0.6)))
+    bent = stage.ball(0.8, stage.shader(name="Tinted", Color=(0.8, 0.2, 0.2)), segments=96, location=(0, 0, 1))
+    wave = bent.modifiers.new("Wave", "DISPLACE")
+    curve = wave.driver_add("strength")
+    curve.driver.expression = "0.1 * sin(frame)"
+    color = next(n for n in bpy.data.materials["Tinted"].node_tree.nodes if n.type == "BSDF_DIFFUSE").inputs["Color"]
+    for frame, value in ((1, 0.1), (count, 0.9)):
+        color.default_value = (value, 0.2, 1.0 - value, 1.0)
+        color.keyframe_insert("default_value", frame=frame)
+    moved = stage.cube(0.3, stage.shader(Color=(0.2, 0.8, 0.2)), location=(1, 0, 0.5))
+    for frame, x in ((1, -1.0), (count, 1.0)):
+        moved.location.x = x
+        moved.keyframe_insert("location", frame=frame)
+    ground.modifiers.new("Particles", "PARTICLE_SYSTEM")
+    particles = ground.particle_systems[0].settings
+    particles.count, particles.frame_start, particles.frame_end, particles.lifetime = 40, 1, count, 30
+    particles.render_type, particles.instance_object, particles.particle_size = "OBJECT", moved, 0.3
+    stage.light("SUN", 3.0, (0, -3, 5), (0.5, 0.3, 0))
+    stage.sky()
+    stage.camera((0, -6, 3), (0, 0, 0.5))
+    scene.frame_start, scene.frame_end = 1, count
+    return scene
+
+
+def long(persistent, count):
+    """Return the bytes that are allocated after each frame of an animation, and how some frames differ from separate renders.
+
+    The particles of a frame need all frames before it: a separate render follows them too.
+    """
+    folder = tempfile.mkdtemp()
+    count = int(count)
+    scene = _long(count)
+    some, alone, given = (2, count // 2, count), {}, []
+    for frame in range(1, count + 1):
+        scene.frame_set(frame)
+        if frame in some:
+            alone[frame] = _read(stage.write_exr(scene, os.path.join(folder, f"alone_{frame}.exr")))
+
+    def count_bytes(scene, *_):
+        given.append(memory_now.held()["given"])
+
+    scene.frame_set(1)
+    scene.render.use_persistent_data = persistent == "yes"
+    scene.render.filepath = os.path.join(folder, "frame_")
+    bpy.app.handlers.render_post.append(count_bytes)
+    try:
+        bpy.ops.render.render(animation=True)
+    finally:
+        bpy.app.handlers.render_post.remove(count_bytes)
+    together = {frame: _read(os.path.join(folder, f"frame_{frame:04d}.exr")) for frame in some}
+    return {
+        "given": given,
+        "differences": [float(np.abs(alone[frame] - together[frame]).max()) for frame in some],
+        "changes": [float(np.abs(together[a] - together[b]).max()) for a, b in zip(some, some[1:], strict=False)],
+    }
 
 
 def _read(path):

@@ -3,12 +3,15 @@
 import dataclasses
 import os
 import tempfile
+from collections import Counter
 
 import bpy
 import numpy as np
 import stage
 
 from addon.bindings import snapshot
+from addon.bindings.session import Scene
+from addon.bindings.stock import Stock
 from addon.export.parts import Parts
 from addon.export.scene import ExportOptions, export_scene
 
@@ -69,7 +72,7 @@ def _box(number, name, material, data=None):
     return item
 
 
-def _build():
+def build():
     """Build seven objects with five meshes, six materials, a world, and two images."""
     scene = stage.empty()
     # One of Cycles' settings that the export warns of.
@@ -97,7 +100,7 @@ def _build():
     return scene
 
 
-def _edit_mesh():
+def edit_mesh():
     mesh = bpy.data.objects["Plain"].data
     mesh.vertices[0].co.x += 0.25
     mesh.update()
@@ -107,7 +110,7 @@ def _node(material, kind):
     return next(node for node in bpy.data.materials[material].node_tree.nodes if node.type == kind)
 
 
-def _edit_material():
+def edit_material():
     _node("Plain", "BSDF_DIFFUSE").inputs["Color"].default_value = (0.1, 0.9, 0.3, 1.0)
 
 
@@ -130,7 +133,9 @@ def _bend():
     bpy.data.objects["Twin"].modifiers.new("Bend", "SIMPLE_DEFORM").angle = 1.0
 
 
-def _set(path, value):
+def set_to(path, value):
+    """Return an edit that sets a property; path: an expression of bpy, objects and scene."""
+
     def edit():
         owner, name = path.rsplit(".", 1)
         target = eval(owner, {"bpy": bpy, "objects": bpy.data.objects, "scene": bpy.context.scene})
@@ -140,21 +145,21 @@ def _set(path, value):
 
 
 EDITS = {
-    "nothing": _set("scene.cursor.location", (1, 2, 3)),
-    "moved object": _set("objects['Lone'].location", (6, 1, 0)),
-    "moved twice": _set("objects['Lone'].rotation_euler", (0, 0, 1)),
-    "moved camera": _set("objects['Camera'].location", (1, -6, 3)),
-    "moved lamp": _set("objects['Light'].location", (1, -3, 5)),
-    "moved place": _set("objects['Place'].location", (1, 1, 1)),
-    "edited material": _edit_material,
+    "nothing": set_to("scene.cursor.location", (1, 2, 3)),
+    "moved object": set_to("objects['Lone'].location", (6, 1, 0)),
+    "moved twice": set_to("objects['Lone'].rotation_euler", (0, 0, 1)),
+    "moved camera": set_to("objects['Camera'].location", (1, -6, 3)),
+    "moved lamp": set_to("objects['Light'].location", (1, -3, 5)),
+    "moved place": set_to("objects['Place'].location", (1, 1, 1)),
+    "edited material": edit_material,
     "edited group": _edit_group,
-    "edited mesh": _edit_mesh,
-    "edited world": _set("scene.world.node_tree.nodes['Background'].inputs['Strength'].default_value", 2.0),
-    "edited lamp": _set("bpy.data.lights[0].energy", 50.0),
+    "edited mesh": edit_mesh,
+    "edited world": set_to("scene.world.node_tree.nodes['Background'].inputs['Strength'].default_value", 2.0),
+    "edited lamp": set_to("bpy.data.lights[0].energy", 50.0),
     "animated frame": lambda: bpy.context.scene.frame_set(2),
     "still frame": lambda: bpy.context.scene.frame_set(5) or bpy.context.scene.frame_set(6),
-    "hidden object": _set("objects['Other'].hide_viewport", True),
-    "shown object": _set("objects['Other'].hide_viewport", False),
+    "hidden object": set_to("objects['Other'].hide_viewport", True),
+    "shown object": set_to("objects['Other'].hide_viewport", False),
     "painted picture": _paint,
     "other picture": _swap_pictures,
     "modifier": _bend,
@@ -162,22 +167,44 @@ EDITS = {
 
 
 class Window:
-    """Exports at each update of the depsgraph, as a 3D view does."""
+    """Exports, uploads and commits at each update of the depsgraph, as a 3D view does."""
 
     def __init__(self):
-        self.parts = Parts()
+        self.parts, self.stock, self.scene = Parts(), Stock(), None
         self.camera = snapshot.Camera()
         self.exports = []
+        self.uploads, self.made = Counter(), Counter()
 
     def export(self, _scene, depsgraph):
         options = ExportOptions(view=self.camera, parts=self.parts)
         got, messages = export_scene(depsgraph, options)
         whole, others = export_scene(depsgraph, dataclasses.replace(options, parts=None))
         self.images = len(got.images)
-        self.exports.append((dict(self.parts.counts), _plain(got) == _plain(whole), messages.lines() == others.lines()))
+        self.exports.append((dict(self.parts.counts), plain(got) == plain(whole), messages.lines() == others.lines()))
+        self._commit(got)
+
+    def _commit(self, got):
+        before = set() if self.scene is None else {part.handle for part in self.scene._parts}
+        scene = Scene(before=self.scene, stock=self.stock)
+        scene.fill(got)
+        scene.commit()
+        for part in scene._parts:
+            if part.handle not in before:
+                self.uploads[type(part.record).__name__] += 1
+                before.add(part.handle)
+        self.made.update(scene.made())
+        if self.scene is not None:
+            self.scene.close()
+        self.scene = scene
+
+    def take_work(self):
+        """Return what was uploaded and made since the last call, by kind."""
+        done = [{name: count for name, count in counts.items() if count} for counts in (self.uploads, self.made)]
+        self.uploads.clear(), self.made.clear()
+        return done
 
 
-def _plain(given):
+def plain(given):
     """Return the snapshot with images, materials and meshes in place of their indices, which may differ."""
     table = given.instances
     columns = [table.kinds, table.object_indices, table.shadings, table.hidden_from, table.flags, table.terminators]
@@ -202,7 +229,7 @@ def _with_pictures(given, shader):
 
 def edits():
     """Return {edit: counts of all exports that it caused, same snapshot, same messages}."""
-    _build()
+    build()
     return results(EDITS)
 
 
@@ -211,7 +238,7 @@ def results(edits):
     results = {}
     bpy.context.view_layer.update()
     window.export(None, bpy.context.evaluated_depsgraph_get())
-    results["first"] = window.exports.pop()
+    results["first"] = (*window.exports.pop(), 1, *window.take_work())
     handlers = bpy.app.handlers
     handlers.depsgraph_update_post.append(window.export)
     handlers.frame_change_post.append(window.export)
@@ -221,7 +248,7 @@ def results(edits):
             bpy.context.view_layer.update()
             counts = {kind: sum(export[0][kind] for export in window.exports) for kind in KINDS}
             alike = [all(export[i] for export in window.exports) for i in (1, 2)]
-            results[name] = (counts, *alike, len(window.exports))
+            results[name] = (counts, *alike, len(window.exports), *window.take_work())
             window.exports.clear()
     finally:
         handlers.depsgraph_update_post.remove(window.export)
@@ -249,7 +276,7 @@ def _give(block, value):
 
 _EDITS_OF_OBJECTS = {
     "object": _give("bpy.data.objects['Heated']", 0.5),
-    "moved object": _set("objects['Placed'].location", (1, 2, 3)),
+    "moved object": set_to("objects['Placed'].location", (1, 2, 3)),
 }
 _EDITS_OF_THE_LAYER = {
     "view layer": _give("bpy.context.view_layer", 0.6),
@@ -269,104 +296,3 @@ def property_edits():
     of_objects = results(_EDITS_OF_OBJECTS)
     _box(2, "Layered", _named("VIEW_LAYER", "heat"))
     return {**results(_EDITS_OF_THE_LAYER), **of_objects}
-
-
-def _animate(name, path, first, last):
-    thing = bpy.data.objects[name]
-    for frame, value in ((1, first), (3, last)):
-        setattr(thing, path, value)
-        thing.keyframe_insert(path, frame=frame)
-
-
-def _later():
-    bpy.context.scene.frame_set(bpy.context.scene.frame_current % 3 + 1)
-
-
-def _add():
-    twin = bpy.data.objects["Other"].copy()
-    twin.location.x = 8.0
-    bpy.context.scene.collection.objects.link(twin)
-
-
-def _collect():
-    collection = bpy.data.collections.new("Lone")
-    bpy.context.scene.collection.children.link(collection)
-    collection.objects.link(bpy.data.objects["Lone"])
-    bpy.context.scene.collection.objects.unlink(bpy.data.objects["Lone"])
-
-
-def _shape():
-    """Set a property of the add-on as a panel does: a script's change is not reported."""
-    bpy.data.objects["Twin"].lancer.shape = "SPHERE"
-    bpy.data.objects["Twin"].update_tag()
-
-
-def _both_at_once():
-    _later()
-    bpy.data.objects["Pictured"].visible_camera = False
-
-
-# The counts of objects, meshes and shaders that a picture with Persistent Data reads after each edit.
-_EDITS_OF_PICTURES = {
-    "nothing": lambda: None,
-    "output path": _set("scene.render.filepath", "//other"),
-    "moved object": _set("objects['Lone'].location", (6, 1, 0)),
-    "stretched object": _set("objects['Lone'].scale", (1, 1, 3)),
-    "moved camera": _set("objects['Camera'].location", (1, -6, 3)),
-    "edited material": _edit_material,
-    "edited mesh": _edit_mesh,
-    "edited lamp": _set("bpy.data.lights[0].energy", 50.0),
-    "hidden object": _set("objects['Other'].hide_render", True),
-    "shown object": _set("objects['Other'].hide_render", False),
-    "object index": _set("objects['Twin'].pass_index", 3),
-    "shape": _shape,
-    "another world": lambda: setattr(bpy.context.scene, "world", bpy.data.worlds.new("Another")),
-    "no surfaces": _set("bpy.context.view_layer.use_solid", False),
-    "collection": _collect,
-    "surfaces": _set("bpy.context.view_layer.use_solid", True),
-    "holdout": _set("bpy.context.view_layer.layer_collection.children[0].holdout", True),
-    "excluded": _set("bpy.context.view_layer.layer_collection.children[0].exclude", True),
-    "removed object": lambda: bpy.data.objects.remove(bpy.data.objects["Placed"]),
-    "added object": _add,
-    "keyed": lambda: _animate("Pictured", "location", (2, 0, 0), (2, 2, 0)),
-    "frame": _later,
-    "frame again": _later,
-    "frame and edit": _both_at_once,
-    "keyed index": lambda: _animate("Pictured", "pass_index", 1, 5),
-    "frame with index": _later,
-    "moved for a while": _set("objects['Pictured'].delta_location", (0, 0, 1)),
-}
-
-
-def pictures():
-    """Press F12 with Persistent Data after each edit. Return {edit: (counts, same snapshot, same messages)}.
-
-    Each export is compared with one of everything from the same depsgraph.
-    """
-    from addon.engine import render_engine
-
-    scene = _build()
-    # The shape key would change a mesh in each frame.
-    bpy.data.objects["Keyed"].shape_key_clear()
-    scene.render.resolution_x = scene.render.resolution_y = 8
-    scene.lancer.samples = 1
-    scene.render.use_persistent_data = True
-    compared, results = [], {}
-
-    def export(depsgraph, options, poll):
-        got, messages = export_scene(depsgraph, options, poll)
-        whole, others = export_scene(depsgraph, dataclasses.replace(options, parts=None, on_mesh=None), poll)
-        same = messages.lines() == others.lines()
-        compared.append((options.parts and dict(options.parts.counts), _plain(got) == _plain(whole), same))
-        return got, messages
-
-    render_engine.export_scene = export
-    try:
-        for name, edit in {"first": lambda: None, **_EDITS_OF_PICTURES}.items():
-            edit()
-            bpy.ops.render.render()
-            (results[name],) = compared
-            compared.clear()
-    finally:
-        render_engine.export_scene = export_scene
-    return results

@@ -6,7 +6,6 @@ import threading
 
 import bpy
 import gpu
-import memory_now
 import numpy as np
 import stage
 from mathutils import Matrix, Quaternion
@@ -253,35 +252,6 @@ def plays(folder):
         with view.override():
             bpy.ops.screen.animation_cancel(restore_frame=False)
     return {"frames": frames(), "read": shown()._parts.counts, "at": scene.frame_current}
-
-
-def resized(folder):
-    """Return the mebibytes by which allocated memory grows over ten changes of the view's size, and those of one scene.
-
-    The old and the new picture exist side by side for a while after a change, so the minimum of six changes is taken. Resident
-    memory would include free memory that the allocator keeps.
-    """
-    build(samples=0)
-    data = bpy.data.meshes.new("Heavy")
-    side = 500
-    x, y = np.meshgrid(np.linspace(-1.0, 1.0, side), np.linspace(-1.0, 1.0, side))
-    places = np.stack([x, y, np.sin(9.0 * x) * np.sin(9.0 * y)], axis=2).reshape(-1, 3)
-    first = (np.arange(side - 1)[:, None] * side + np.arange(side - 1)).ravel()
-    data.from_pydata(places.tolist(), [], np.stack([first, first + 1, first + side + 1, first + side], 1).tolist())
-    stage.link("Heavy", data)
-    View().render()
-    held = []
-    for _ in range(22):
-        before = View().region.width
-        with View().override():
-            bpy.ops.screen.screen_full_area(use_hide_panels=True)
-        yield 0.3
-        assert View().region.width != before
-        View().render()
-        yield from until(lambda: shown() is not None and shown().painter.picture is not None)
-        held.append(memory_now.held()["given"])
-    copy = sum(array.nbytes for mesh in shown()._contents.meshes for array in vars(mesh).values() if hasattr(array, "nbytes"))
-    return {"growth": (min(held[-6:]) - min(held[6:12])) / 2**20, "copy": copy / 2**20}
 
 
 def canvas(folder):

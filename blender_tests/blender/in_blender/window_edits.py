@@ -5,6 +5,7 @@ blender --factory-startup -p 0 0 960 540 -P window_edits.py -- ANSWER.json ENGIN
 
 import os
 import sys
+import time
 
 import bpy
 import numpy as np
@@ -85,6 +86,7 @@ def measure():
         "lamp": lambda there: setattr(lamp, "location", (0.0, 0.0, LAMP if there else AWAY)),
     }
     delays = {}
+    settled = time.monotonic()
     for name, change in kinds.items():
         delays[name] = []
         for number in range(TIMES):
@@ -102,7 +104,7 @@ def measure():
     for number in range(TIMES):
         delays["world"].append((yield from delay(lambda turn=turns[1 - number % 2]: setattr(rotation, "default_value", turn))))
         yield RESTING
-    return {**delays, "region": [region.width, region.height]}
+    return {**delays, "hold": window_watch.longest_hold(settled), "region": [region.width, region.height]}
 
 
 scene = window_watch.start(ENGINE, THREADS)

@@ -16,6 +16,7 @@ import bpy
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path[:0] = [os.path.dirname(os.path.dirname(os.path.dirname(HERE))), HERE]
 
+import viewport_costs  # noqa: E402
 import viewport_endings  # noqa: E402
 import viewport_places  # noqa: E402
 import viewport_shown  # noqa: E402
@@ -52,6 +53,10 @@ def step():
 addon.register()
 bpy.context.preferences.view.show_splash = False
 bpy.context.preferences.filepaths.use_auto_save_temporary_files = False
-case = next(getattr(place, CASE) for place in (viewport_places, viewport_shown, viewport_endings) if hasattr(place, CASE))
+case = next(
+    getattr(place, CASE)
+    for place in (viewport_places, viewport_shown, viewport_costs, viewport_endings)
+    if hasattr(place, CASE)
+)
 steps = case(FOLDER, *ARGUMENTS)
 bpy.app.timers.register(step, first_interval=_STARTING, persistent=True)

@@ -14,13 +14,16 @@ import numpy as np
 from mathutils import Quaternion
 
 import addon
+from addon.viewport.viewport import Viewport
 
 PART = 32
 # A change is shown once the part is brighter or darker by this factor: noise is below it, the changes made are above.
 FACTOR = 1.5
+TURN = 0.003  # seconds that are more than Blender takes from an update to the drawing after it
 DOWN = Quaternion((1, 0, 0), 0.9)
 
 seen = []  # (time, mean of the part, a key that differs between pictures)
+held = []  # (start, end) of each call of the add-on, during which Blender's main loop stands
 
 
 def start(engine, threads):
@@ -40,6 +43,8 @@ def start(engine, threads):
 def _watch(engine):
     """Read back each drawing of an engine."""
     watched = addon.engine.render_engine.LancerRenderEngine if engine == "LANCER" else cycles.CyclesRender
+    for name in ("update", "draw", "step"):
+        setattr(Viewport, name, _timed(getattr(Viewport, name)))
     plain = watched.view_draw
 
     def view_draw(self, context, depsgraph):
@@ -50,6 +55,34 @@ def _watch(engine):
         seen.append((time.monotonic(), float(values.mean()), hash(values.tobytes())))
 
     watched.view_draw = view_draw
+
+
+def _timed(call):
+    def timed(*arguments):
+        start = time.monotonic()
+        try:
+            return call(*arguments)
+        finally:
+            held.append((start, time.monotonic()))
+
+    return timed
+
+
+def longest_hold(since):
+    """Return the longest seconds since a time for which the add-on has held Blender's main loop between two of its turns.
+
+    An update and the drawing after it are one hold. 0.0 for Cycles, whose calls are not timed.
+    """
+    longest = 0.0
+    begun = ended = None
+    for start, end in held:
+        if start < since:
+            continue
+        if begun is None or start - ended > TURN:
+            begun = start
+        ended = max(end, ended or end)
+        longest = max(longest, ended - begun)
+    return longest
 
 
 def open_view(scene, engine, distance, settling):

@@ -300,5 +300,12 @@ _ROWS = (
     _window,
     _view,
     _edits,
+    lambda f: at_most(
+        "the add-on holds Blender's main loop after an edit, longest",
+        "0.05 s",
+        get(f, "edits", "LANCER", "hold"),
+        0.05,
+        "{:.3f} s",
+    ),
     _frames,
 )

@@ -39,12 +39,17 @@ def view(rounds, threads):
 
 
 def edits(rounds, threads):
-    """Return {engine: {kind of edit: seconds until shown}} in a view of a million faces, measured by turns."""
+    """Return {engine: {kind of edit: seconds until shown}} in a view of a million faces, measured by turns.
+
+    hold: the longest seconds for which the add-on held Blender's main loop.
+    """
     answers = _answers(rounds, "window_edits.py", _REGION, threads)
-    names = [name for name in answers["LANCER"][0] if name != "region"]
+    names = [name for name in answers["LANCER"][0] if name not in ("region", "hold")]
     for answer in (answer for found in answers.values() for answer in found):
         answer.update({name: middle(answer[name])["median"] for name in names})
-    return {engine: middles(found, names) for engine, found in answers.items()}
+    figures = {engine: middles(found, names) for engine, found in answers.items()}
+    figures["LANCER"].update(middles(answers["LANCER"], ("hold",)))
+    return figures
 
 
 def _answers(rounds, script, size, *arguments):

@@ -75,7 +75,7 @@ bool has_directions(const WorldView &world) {
 class SkyLooks {
 public:
   SkyLooks(const ProgramView &program, const WorldView &world, const NodeScene &scene)
-      : program_(program), world_(world), values_(program.value_count()) {
+      : kernel_(node_kernel()), program_(program), world_(world), values_(program.value_count()) {
     block_.scene = scene;
     block_.surface = false;
     for (int lane = 0; lane < kBlockLanes; ++lane) {
@@ -95,7 +95,7 @@ public:
   // Evaluates the first lanes.
   void run(uint32_t lanes) {
     block_.used = (1u << lanes) - 1u;
-    node_kernel().run(program_, world_.schedule, block_, values_.data());
+    kernel_.run(program_, world_.schedule, block_, values_.data());
   }
   glm::vec3 radiance(uint32_t lane) const {
     if (!world_.radiance.varies())
@@ -105,10 +105,28 @@ public:
   }
 
 private:
+  const NodeKernel &kernel_;
   ProgramView program_;
   WorldView world_;
   NodeBlock block_;
   std::vector<NodeLanes> values_;
+};
+
+// The lookups of a row of cells in their order: column by column, and within a cell row by row.
+struct LookOfRow {
+  uint32_t column = 0, across = 0, up = 0;
+
+  // Returns whether the cell is left.
+  bool next(uint32_t looks) {
+    if (++across < looks)
+      return false;
+    across = 0;
+    if (++up < looks)
+      return false;
+    up = 0;
+    ++column;
+    return true;
+  }
 };
 
 } // namespace
@@ -163,26 +181,34 @@ void Environment::make_maps(const BuildContext &context, bool glass) {
   ProgramView plain = world_.program;
   plain.nodes = nodes;
   const ProgramView &program = plain;
-  const DirectionMap grid(width, height, std::vector<float>(size_t(width) * height, 1.0f));
+  const DirectionMap grid(width, height, std::vector<float>(size_t(width) * height, 1.0f), context);
   std::vector<float> weights(size_t(width) * height);
   std::vector<double> totals(height);
   const uint32_t of_cell = looks * looks;
+  // All lookups of a column have one azimuth.
+  std::vector<SinCos<double>> azimuths(size_t(width) * looks);
+  for (size_t i = 0; i < azimuths.size(); ++i)
+    azimuths[i] = grid.azimuth(double(i / looks) + (double(i % looks) + 0.5) / looks);
   parallel_for(context, height, [&](size_t row) {
     SkyLooks lanes(program, world_, scene);
+    std::vector<SinCos<double>> polars(looks);
+    for (uint32_t look = 0; look < looks; ++look)
+      polars[look] = grid.polar(double(row) + (look + 0.5) / looks);
     float sum = 0.0f;
-    for (uint32_t first = 0; first < width * of_cell; first += kBlockLanes) {
-      const uint32_t used = std::min(uint32_t(kBlockLanes), width * of_cell - first);
-      for (uint32_t lane = 0; lane < used; ++lane) {
-        const uint32_t column = (first + lane) / of_cell, look = (first + lane) % of_cell;
-        const double x = column + (look % looks + 0.5) / looks, y = double(row) + (look / looks + 0.5) / looks;
-        lanes.aim(lane, grid.direction(x, y));
+    LookOfRow aimed, found;
+    while (aimed.column < width) {
+      uint32_t used = 0;
+      for (; used < uint32_t(kBlockLanes) && aimed.column < width; ++used) {
+        lanes.aim(used, DirectionMap::direction(polars[aimed.up], azimuths[size_t(aimed.column) * looks + aimed.across]));
+        aimed.next(looks);
       }
       lanes.run(used);
       for (uint32_t lane = 0; lane < used; ++lane) {
         sum += weight_of(lanes.radiance(lane));
-        if ((first + lane) % of_cell + 1 < of_cell)
+        const uint32_t column = found.column;
+        if (!found.next(looks))
           continue;
-        float &weight = weights[row * width + (first + lane) / of_cell];
+        float &weight = weights[row * width + column];
         const float mean = sum / float(of_cell);
         weight = std::isfinite(mean) ? mean : 0.0f;
         totals[row] += double(weight) * grid.solid_angle(uint32_t(row));
@@ -209,7 +235,7 @@ void Environment::make_maps(const BuildContext &context, bool glass) {
     const float even = sum > 0.0 ? kEvenShare * float(sum / (4.0 * glm::pi<double>())) : 1.0f;
     for (float &weight : above)
       weight += even;
-    DirectionMap map(width, height, above);
+    DirectionMap map(width, height, above, context);
     // Give each sun a share of the samples by its light, relative to the light that this map samples.
     const double of_suns = std::min(light / (light + sum), kSunShare);
     for (size_t i = 0; i < suns.size(); ++i)

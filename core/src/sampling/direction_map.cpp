@@ -2,11 +2,25 @@
 
 #include "sampling/elementary.h"
 
+#include <algorithm>
 #include <glm/gtc/constants.hpp>
+#include <numeric>
 
 namespace lancer {
 
-DirectionMap::DirectionMap(uint32_t width, uint32_t height, const std::vector<float> &weights)
+namespace {
+
+// Stores a choice among size entries, whose guide gets the last entry too.
+void store(const WeightedChoice &choice, uint32_t size, double *sums, uint32_t *guide) {
+  std::ranges::copy(choice.sums(), sums);
+  uint32_t *const end = guide + WeightedChoice::guide_steps(size);
+  std::fill(std::ranges::copy(choice.guide(), guide).out, end, 0u);
+  *end = size - 1;
+}
+
+} // namespace
+
+DirectionMap::DirectionMap(uint32_t width, uint32_t height, const std::vector<float> &weights, const BuildContext &context)
     : width_(width), height_(height) {
   const uint32_t half = (height + 1) / 2;
   for (uint32_t row = 0; row <= half; ++row) {
@@ -15,28 +29,19 @@ DirectionMap::DirectionMap(uint32_t width, uint32_t height, const std::vector<fl
   }
   for (uint32_t row = 0; row < half; ++row)
     solid_angles_.push_back(2.0 * glm::pi<double>() / width * (versines_[row + 1] - versines_[row]));
-  std::vector<double> columns(width), totals(height);
-  column_sums_.reserve(size_t(height) * (width + 1));
-  column_guide_.reserve(size_t(height) * (WeightedChoice::guide_steps(width) + 1));
-  for (uint32_t row = 0; row < height; ++row) {
-    double sum = 0.0;
-    for (uint32_t column = 0; column < width; ++column) {
-      columns[column] = double(weights[size_t(row) * width + column]);
-      sum += columns[column];
-    }
-    totals[row] = sum * solid_angle(row);
-    append(WeightedChoice(columns), column_sums_, column_guide_, width);
-  }
-  append(WeightedChoice(totals), row_sums_, row_guide_, height);
-}
-
-void DirectionMap::append(const WeightedChoice &choice, std::vector<double> &sums, std::vector<uint32_t> &guide,
-                          uint32_t size) const {
-  sums.insert(sums.end(), choice.sums().begin(), choice.sums().end());
-  const size_t end = guide.size() + WeightedChoice::guide_steps(size);
-  guide.insert(guide.end(), choice.guide().begin(), choice.guide().end());
-  guide.resize(end, 0);
-  guide.push_back(size - 1);
+  const size_t steps = WeightedChoice::guide_steps(width) + 1;
+  column_sums_.resize(size_t(height) * (width + 1));
+  column_guide_.resize(size_t(height) * steps);
+  row_sums_.resize(height + 1);
+  row_guide_.resize(WeightedChoice::guide_steps(height) + 1);
+  std::vector<double> totals(height);
+  parallel_for(context, height, [&](size_t row) {
+    const float *const first = weights.data() + row * width;
+    const std::vector<double> columns(first, first + width);
+    totals[row] = std::accumulate(columns.begin(), columns.end(), 0.0) * solid_angle(uint32_t(row));
+    store(WeightedChoice(columns), width, column_sums_.data() + row * (width + 1), column_guide_.data() + row * steps);
+  });
+  store(WeightedChoice(totals), height, row_sums_.data(), row_guide_.data());
 }
 
 void DirectionMap::add_disc(const glm::dvec3 &axis, double half_angle, double share) {
@@ -60,9 +65,14 @@ DirectionMap::Sample DirectionMap::sample(const glm::vec2 &u) const {
 
 double DirectionMap::pdf(const glm::vec3 &direction) const { return direction_pdf(table(), Vector3<float>(direction)); }
 
-glm::dvec3 DirectionMap::direction(double column, double row) const {
-  const double theta = glm::pi<double>() * (row / height_), phi = glm::pi<double>() * (2.0 * column / width_ - 1.0);
-  return {sin(theta) * cos(phi), sin(theta) * sin(phi), cos(theta)};
+SinCos<double> DirectionMap::polar(double row) const {
+  const double theta = glm::pi<double>() * (row / height_);
+  return {sin(theta), cos(theta)};
+}
+
+SinCos<double> DirectionMap::azimuth(double column) const {
+  const double phi = glm::pi<double>() * (2.0 * column / width_ - 1.0);
+  return {sin(phi), cos(phi)};
 }
 
 DirectionTable DirectionMap::table() const {

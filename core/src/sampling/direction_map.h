@@ -3,6 +3,7 @@
 
 #include "sampling/distribution.h"
 #include "sampling/elementary.h"
+#include "simd/parallel.h"
 #include "simd/vectors.h"
 
 namespace lancer {
@@ -158,7 +159,7 @@ class DirectionMap {
 public:
   DirectionMap() = default;
   // weights[row * width + column]: density up to a factor, per solid angle; 0 is never sampled.
-  DirectionMap(uint32_t width, uint32_t height, const std::vector<float> &weights);
+  DirectionMap(uint32_t width, uint32_t height, const std::vector<float> &weights, const BuildContext &context = {});
 
   bool empty() const { return height_ == 0; }
   // Adds a disc of directions around an axis that takes a share of the samples. The shares of all must be below 1.
@@ -171,8 +172,12 @@ public:
   // Returns the density of a direction in floats, as in the nodes of a world.
   double pdf(const glm::vec3 &direction) const;
 
-  // Returns the direction at a position of the grid, (0, 0) its first corner, linear in the angles.
-  glm::dvec3 direction(double column, double row) const;
+  // Angles of a position of the grid, (0, 0) its first corner, and the direction at both.
+  SinCos<double> polar(double row) const;
+  SinCos<double> azimuth(double column) const;
+  static glm::dvec3 direction(const SinCos<double> &polar, const SinCos<double> &azimuth) {
+    return {polar.sin * azimuth.cos, polar.sin * azimuth.sin, polar.cos};
+  }
   // Returns the solid angle of each cell of a row.
   double solid_angle(uint32_t row) const { return solid_angles_[from_pole(row)]; }
   // Returns a table that is valid as long as the map is neither changed nor moved.
@@ -180,7 +185,6 @@ public:
   size_t bytes() const;
 
 private:
-  void append(const WeightedChoice &choice, std::vector<double> &sums, std::vector<uint32_t> &guide, uint32_t size) const;
   uint32_t from_pole(uint32_t row) const { return 2 * row < height_ ? row : height_ - row - 1; }
 
   uint32_t width_ = 0, height_ = 0;

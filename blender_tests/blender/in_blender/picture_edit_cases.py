@@ -1,0 +1,109 @@
+"""Pictures with Persistent Data, each after one edit: what is read, and whether the snapshot equals that of a full export."""
+
+import dataclasses
+
+import bpy
+from parts_cases import build, edit_material, edit_mesh, plain, set_to
+
+from addon.export.scene import export_scene
+
+
+def _animate(name, path, first, last):
+    thing = bpy.data.objects[name]
+    for frame, value in ((1, first), (3, last)):
+        setattr(thing, path, value)
+        thing.keyframe_insert(path, frame=frame)
+
+
+def _later():
+    bpy.context.scene.frame_set(bpy.context.scene.frame_current % 3 + 1)
+
+
+def _add():
+    twin = bpy.data.objects["Other"].copy()
+    twin.location.x = 8.0
+    bpy.context.scene.collection.objects.link(twin)
+
+
+def _collect():
+    collection = bpy.data.collections.new("Lone")
+    bpy.context.scene.collection.children.link(collection)
+    collection.objects.link(bpy.data.objects["Lone"])
+    bpy.context.scene.collection.objects.unlink(bpy.data.objects["Lone"])
+
+
+def _shape():
+    """Set a property of the add-on as a panel does: a script's change is not reported."""
+    bpy.data.objects["Twin"].lancer.shape = "SPHERE"
+    bpy.data.objects["Twin"].update_tag()
+
+
+def _both_at_once():
+    _later()
+    bpy.data.objects["Pictured"].visible_camera = False
+
+
+# The counts of objects, meshes and shaders that a picture with Persistent Data reads after each edit.
+_EDITS_OF_PICTURES = {
+    "nothing": lambda: None,
+    "output path": set_to("scene.render.filepath", "//other"),
+    "moved object": set_to("objects['Lone'].location", (6, 1, 0)),
+    "stretched object": set_to("objects['Lone'].scale", (1, 1, 3)),
+    "moved camera": set_to("objects['Camera'].location", (1, -6, 3)),
+    "edited material": edit_material,
+    "edited mesh": edit_mesh,
+    "edited lamp": set_to("bpy.data.lights[0].energy", 50.0),
+    "hidden object": set_to("objects['Other'].hide_render", True),
+    "shown object": set_to("objects['Other'].hide_render", False),
+    "object index": set_to("objects['Twin'].pass_index", 3),
+    "shape": _shape,
+    "another world": lambda: setattr(bpy.context.scene, "world", bpy.data.worlds.new("Another")),
+    "no surfaces": set_to("bpy.context.view_layer.use_solid", False),
+    "collection": _collect,
+    "surfaces": set_to("bpy.context.view_layer.use_solid", True),
+    "holdout": set_to("bpy.context.view_layer.layer_collection.children[0].holdout", True),
+    "excluded": set_to("bpy.context.view_layer.layer_collection.children[0].exclude", True),
+    "removed object": lambda: bpy.data.objects.remove(bpy.data.objects["Placed"]),
+    "added object": _add,
+    "keyed": lambda: _animate("Pictured", "location", (2, 0, 0), (2, 2, 0)),
+    "frame": _later,
+    "frame again": _later,
+    "frame and edit": _both_at_once,
+    "keyed index": lambda: _animate("Pictured", "pass_index", 1, 5),
+    "frame with index": _later,
+    "moved for a while": set_to("objects['Pictured'].delta_location", (0, 0, 1)),
+}
+
+
+def pictures():
+    """Press F12 with Persistent Data after each edit. Return {edit: (counts, same snapshot, same messages)}.
+
+    Each export is compared with one of everything from the same depsgraph.
+    """
+    from addon.engine import render_engine
+
+    scene = build()
+    # The shape key would change a mesh in each frame.
+    bpy.data.objects["Keyed"].shape_key_clear()
+    scene.render.resolution_x = scene.render.resolution_y = 8
+    scene.lancer.samples = 1
+    scene.render.use_persistent_data = True
+    compared, results = [], {}
+
+    def export(depsgraph, options, poll):
+        got, messages = export_scene(depsgraph, options, poll)
+        whole, others = export_scene(depsgraph, dataclasses.replace(options, parts=None, on_mesh=None), poll)
+        same = messages.lines() == others.lines()
+        compared.append((options.parts and dict(options.parts.counts), plain(got) == plain(whole), same))
+        return got, messages
+
+    render_engine.export_scene = export
+    try:
+        for name, edit in {"first": lambda: None, **_EDITS_OF_PICTURES}.items():
+            edit()
+            bpy.ops.render.render()
+            (results[name],) = compared
+            compared.clear()
+    finally:
+        render_engine.export_scene = export_scene
+    return results
