@@ -8,6 +8,7 @@ exported, as a window's view_update does.
 """
 
 import dataclasses
+import itertools
 from typing import NamedTuple
 
 import bpy
@@ -43,6 +44,7 @@ class Parts:
         self.counts = {}
         self._images_before = 0
         self._meshes, self._used_meshes = {}, {}
+        self._lights = []
         self.even = {}  # of with_even_normals
         self._traits = {}  # of objects that their animation moves
         self._frame = None
@@ -129,6 +131,11 @@ class Parts:
             found = _Mesh(owners, size, shared_scenes.stock.known(ObjectKind.MESH, read()))
         self._used_meshes[key] = found._replace(owners=found.owners | owners)
         return found.data
+
+    def lights(self, found):
+        """Return lights, each as the record of the export before where that is equal."""
+        self._lights = [old if new == old else new for new, old in itertools.zip_longest(found, self._lights)][: len(found)]
+        return self._lights
 
     def count(self, kind):
         self.counts[kind] += 1

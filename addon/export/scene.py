@@ -87,7 +87,7 @@ def export_scene(depsgraph, options=None, poll=None):
         meshes=tuple(instances.meshes),
         instances=instances.to_table(obey),
         materials=tuple(materials.list),
-        lights=tuple(instances.lights),
+        lights=tuple(instances.lights if parts is None else parts.lights(instances.lights)),
         images=tuple(images.list),
         world=exported.world,
     )

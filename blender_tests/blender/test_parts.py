@@ -36,15 +36,41 @@ EXPECTED = {
     # The modifier is added to one of two objects that share a mesh.
     "modifier": (7, 2, 0, 0),
 }
+# Records that are uploaded after an edit, and parts of the library's scene that its commit makes; no entry is neither. Places
+# of objects are made together, with their search for faces in one plane; trees of meshes that small are part of the places.
+PLACED = {"placements": 1, "plane_searches": 1}
+WORK = {
+    "first": ({"Image": 2, "MeshData": 6, "Material": 5, "Light": 1, "World": 1}, {"materials": 5, **PLACED}),
+    "moved object": ({}, PLACED),
+    "moved twice": ({}, PLACED),
+    "moved lamp": ({"Light": 1}, {}),
+    "moved place": ({"Material": 1}, {"materials": 1}),
+    "edited material": ({"Material": 1}, {"materials": 1}),
+    "edited group": ({"Material": 1}, {"materials": 1}),
+    "edited mesh": ({"MeshData": 1}, PLACED),
+    "edited world": ({"World": 1}, {}),
+    "edited lamp": ({"Light": 1}, {}),
+    "animated frame": ({"MeshData": 1}, PLACED),
+    # The shape ends with the first of two frames.
+    "still frame": ({"MeshData": 1}, PLACED),
+    "hidden object": ({}, PLACED),
+    "shown object": ({"MeshData": 1, "Material": 1}, {"materials": 1, **PLACED}),
+    # Strokes that are not saved are not shown, as in Cycles: the image is the same.
+    "painted picture": ({"Material": 1}, {"materials": 1}),
+    "other picture": ({"Material": 1}, {"materials": 1}),
+    # An image that stands for the one that is not used any more.
+    "modifier": ({"Image": 1, "MeshData": 1}, PLACED),
+}
 
 
 @pytest.mark.parametrize("which", [MODULE, PROGRAM])
 def test_edits(which, tmp_path):
-    """A window's export reads only what the depsgraph reports as changed."""
+    """A window's export reads only what the depsgraph reports as changed, and only that is uploaded and made."""
     got = blenders.run(which, tmp_path, "parts_cases", "edits")
     got.pop("console")
     read = {name: tuple(result[0].values()) for name, result in got.items()}
     assert read == EXPECTED
+    assert {name: tuple(result[4:]) for name, result in got.items() if any(result[4:])} == WORK
     assert not [name for name, result in got.items() if not result[1]], "another snapshot than that of an export of everything"
     assert not [name for name, result in got.items() if not result[2]], "other messages"
 
