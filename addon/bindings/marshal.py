@@ -32,9 +32,8 @@ def _text(text):
 def _parameter(value):
     """Return the abi.Parameter of a number, three numbers or a NodeRef."""
     if isinstance(value, NodeRef):
-        return abi.Parameter((ctypes.c_float * 3)(), value.node)
-    vector = tuple(value) if isinstance(value, (tuple, list)) else (value, 0.0, 0.0)
-    return abi.Parameter((ctypes.c_float * 3)(*vector), -1)
+        return abi.Parameter((), value.node)
+    return abi.Parameter(tuple(value) if isinstance(value, (tuple, list)) else (value,), -1)
 
 
 def _same(value):

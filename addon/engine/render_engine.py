@@ -8,10 +8,10 @@ import time
 import bpy
 
 from ..bindings.abi import LancerError
-from ..bindings.record import bytes_of
 from ..bindings.session import Cancelled, Scene, Session
 from ..denoise import view_layer as denoise
 from ..export.scene import ExportOptions, export_scene
+from ..export.scratch import bytes_in_memory
 from ..export.settings import threads_of
 from ..host import main_thread, redraw, shared_scenes
 from ..host.priority import lowered
@@ -42,6 +42,8 @@ _ERROR_SHARE = 0.03
 _MAX_REPORTS = 30
 # Bytes of a snapshot that may stay in memory until the first picture is shown.
 _MOST_KEPT = 1 << 26
+# Bytes of indices, half a vertex, normals and a UV map.
+_BYTES_OF_TRIANGLE = 48
 # Seconds of a sample so short that the picture needs no coarse one before it.
 _SHORT = 0.2
 
@@ -208,7 +210,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             self._tell(scene, quick_check(scene, snapshot, self._is_over))
 
         self._uses, self._later = (), [find_features, check]
-        if kept_pictures.of(scene) is None and bytes_of(snapshot) > _MOST_KEPT:
+        if kept_pictures.of(scene) is None and _size(snapshot) > _MOST_KEPT:
             self._do_later()
 
     def _do_later(self):
@@ -328,6 +330,12 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             self.report({"WARNING"}, f"Lancer: {message.line}")
         if len(new) > room:
             self.report({"WARNING"}, f"Lancer: {len(new) - room} more messages are in the render properties")
+
+
+def _size(snapshot):
+    """Return about the bytes of a snapshot's triangles and texels: there may be 100 000 meshes."""
+    triangles = sum(len(mesh.triangles) for mesh in snapshot.meshes)
+    return triangles * _BYTES_OF_TRIANGLE + sum(map(bytes_in_memory, snapshot.images))
 
 
 def register():

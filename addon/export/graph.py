@@ -143,11 +143,15 @@ class NodeGraph(NodeBuilder):
         value = self._read(site, socket)
         if isinstance(value, NodeRef):
             return value
-        who = self.who(site)
         if kind == "number":
-            return self.messages.number(value if isinstance(value, float) else value[0], who, socket.name, default, low, high)
+            value = value if isinstance(value, float) else value[0]
+            # Most are usable: name the node only for a message.
+            if low <= value <= high and math.isfinite(value):
+                return value
+            return self.messages.number(value, self.who(site), socket.name, default, low, high)
         if kind == "color":
-            return self.messages.color(triple(value), who, socket.name, 0.5)
+            return self.messages.color(triple(value), self.who(site), socket.name, 0.5)
+        who = self.who(site)
         return tuple(self.messages.number(x, who, socket.name, 0.0) for x in triple(value))
 
     def value(self, site, name):

@@ -42,6 +42,7 @@ class Images:
         self._lost = set()  # keys of _ranges
         self._tables = {}
         self._free = set()  # numbers
+        self._held = 0  # bytes in memory
 
     def numbers(self, image, user, tell, in_memory=False):
         """Return (first, count) of a Blender image, one for each tile; None if it cannot be read. tell(text, key, severity).
@@ -83,8 +84,7 @@ class Images:
             return lambda *arguments: list(made(*arguments))
 
         def stored(image, seen, tell):
-            held = sum(map(bytes_in_memory, self.list))
-            return self._scratch.stored(made(image, seen, tell), held, tell)
+            return self._scratch.stored(made(image, seen, tell), self._held, tell)
 
         return stored
 
@@ -96,6 +96,7 @@ class Images:
                 numbers = range(number, number + len(pictures))
                 break
         self._free.difference_update(numbers)
+        self._held += sum(map(bytes_in_memory, pictures))
         self.list[numbers.start : numbers.stop] = [shared_scenes.stock.known(ObjectKind.IMAGE, picture) for picture in pictures]
         self.placed += len(pictures)
         return numbers.start
@@ -131,6 +132,7 @@ class Images:
         kept = {number for found in self._ranges.values() if found is not None for number in range(found[0], sum(found))}
         for number in range(len(self.list)):
             if number not in kept and number not in used:
+                self._held -= bytes_in_memory(self.list[number])
                 self.list[number] = _NOTHING
                 self._free.add(number)
 

@@ -1,5 +1,6 @@
 """Which images Cycles reads from its texture cache, since Blender 5.2: those have mipmaps."""
 
+import functools
 import os
 import re
 from typing import NamedTuple
@@ -43,10 +44,19 @@ def _has_file(folder, path):
     """Whether a folder has a file of the cache that was made from the image as it is."""
     name, made = os.path.basename(path), int(os.stat(path).st_mtime)
     try:
-        with os.scandir(folder) as entries:
-            return any(
-                entry.name.startswith(name) and _END.fullmatch(entry.name, len(name)) and int(entry.stat().st_mtime) == made
-                for entry in entries
-            )
+        names = _names(folder, os.stat(folder).st_mtime_ns)
+        return any(
+            other.startswith(name) and _END.fullmatch(other, len(name)) and int(_time(folder, other)) == made for other in names
+        )
     except OSError:
         return False
+
+
+def _time(folder, name):
+    return os.stat(os.path.join(folder, name)).st_mtime
+
+
+@functools.lru_cache(maxsize=16)
+def _names(folder, _changed):
+    """Return the names of a folder that may be files of the cache. _changed: the folder's time, which follows new names."""
+    return [name for name in os.listdir(folder) if name.endswith(".tx")]

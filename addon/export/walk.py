@@ -50,6 +50,8 @@ class Walker:
         self._ignored = _IGNORED if has_scripts else _IGNORED | {"SCRIPT"}
 
     def origin(self, site, socket):
+        if not socket.is_linked:
+            return Origin(None, None, socket, (socket.type,))
         asked, path, types = socket, site.path, [socket.type]
         constant, depth = socket, 1
         for _ in range(_LONGEST):

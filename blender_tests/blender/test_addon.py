@@ -232,11 +232,14 @@ FRUGAL = {"MALLOC_ARENA_MAX": "1", "MALLOC_CONF": "narenas:1,tcache:false,dirty_
 
 @both
 def test_many_renders_keep_no_memory(which, tmp_path):
-    """A leak of scenes would keep 15 times the memory; the limit, half of one scene, allows for the allocator."""
+    """A leak of scenes would keep at least 10 times the memory; the limit, half of one scene, allows for the allocator.
+
+    Its arenas give free memory back late, some renders after: the least of five renders counts.
+    """
     got = blenders.run(which, tmp_path, "addon_cases", "many_renders", **FRUGAL)
     resident = got["resident"]
     assert got["triangles"] > 60_000 and len(resident) == 20
-    assert resident[19] - resident[4] <= got["held"] / 2, (got["held"], resident)
+    assert min(resident[15:]) - min(resident[:5]) <= got["held"] / 2, (got["held"], resident)
 
 
 # Renders a grid of n x n vertices and limits the memory at one step of the render.
