@@ -17,7 +17,10 @@ def first_look(rounds, name, **settings):
 
 
 def frames(rounds, threads):
-    """Return {kind of animation: {engine: seconds of a frame beside its samples}}, measured by turns."""
+    """Return {kind of animation: {engine: seconds of a frame beside its samples}}, measured by turns.
+
+    steady: the bytes that 50 frames add to a long animation.
+    """
     found = {}
     for kind in ("camera", "character", "instances"):
 
@@ -25,6 +28,7 @@ def frames(rounds, threads):
             return jobs.in_blender("frames", engine=engine, kind=kind, threads=threads)
 
         found[kind] = {engine: middles(all_) for engine, all_ in by_turns(rounds, ("LANCER", "CYCLES"), show).items()}
+    found["steady"] = jobs.in_blender("steady", engine="LANCER", threads=threads)
     return found
 
 

@@ -249,6 +249,17 @@ def _frames(figures):
     return _all("a frame beside its samples, Persistent Data: camera; deforming head; 20 000 moving instances", goal, parts)
 
 
+def _memory(figures):
+    """A leak of a frame's mesh alone would add 50 times 10 MB."""
+    grown = get(figures, "frames", "steady", "growth_bytes")
+    second = over(get(figures, "shared", "LANCER", "second"), get(figures, "shared", "LANCER", "first"))
+    parts = [
+        _part("50 frames add", None if grown is None else grown / 2**20, "{:.1f} MB", lambda x: x <= 4.0),
+        _part("a second view of a million faces adds", second, "{:.2f} of the first", lambda x: x <= 0.1),
+    ]
+    return _all("memory of an animation of a deforming head; of two views of one scene", "flat; one scene", parts)
+
+
 def _leaks(figures):
     """A leak misses the goal with any number of rays; no leak reaches it only with as many rays as the goal names."""
     count, rays = get(figures, "rays", "leaks"), get(figures, "rays", "leak_rays") or 0
@@ -308,4 +319,5 @@ _ROWS = (
         "{:.3f} s",
     ),
     _frames,
+    _memory,
 )

@@ -9,8 +9,8 @@ from . import goals
 _STYLE = "img.picture { width: 192px }"
 # Measurements besides scenes and rays.
 _REST = (
-    "first_look", "first_shown", "frames", "edits", "million", "instances", "build", "threads_scaling", "many_machines",
-    "classic", "accelerators", "before",
+    "first_look", "first_shown", "frames", "edits", "shared", "million", "instances", "build", "threads_scaling",
+    "many_machines", "classic", "accelerators", "before",
 )  # fmt: skip
 # The renderers of the table for users.
 _USERS = ("lancer", "cycles")

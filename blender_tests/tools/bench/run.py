@@ -78,6 +78,7 @@ def measure_rest(figures, arguments, say):
     attempt(figures, "window", say, window.gaps, rounds, 5.0 if arguments.quick else 20.0, threads)
     attempt(figures, "view", say, window.view, rounds, threads)
     attempt(figures, "edits", say, window.edits, rounds, threads)
+    attempt(figures, "shared", say, window.shared, threads)
     attempt(figures, "classic", say, classic.measure, rounds, threads, arguments.quick)
     if not arguments.quick:
         attempt(figures, "accelerators", say, extras.accelerators, rounds, threads)

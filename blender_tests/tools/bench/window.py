@@ -52,6 +52,12 @@ def edits(rounds, threads):
     return figures
 
 
+def shared(threads):
+    """Return {LANCER: {first, second: bytes that a 3D view of a million faces adds to the program}}."""
+    with windows.screen(*_SCREEN) as display:
+        return {"LANCER": _measured(display, "window_shared.py", _SCREEN, "LANCER", threads)}
+
+
 def _answers(rounds, script, size, *arguments):
     """Return {engine: [answer of each window]}."""
     with windows.screen(*_SCREEN) as display:

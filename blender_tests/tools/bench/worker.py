@@ -6,6 +6,7 @@ import time
 
 import bpy
 import numpy as np
+from blender.in_blender import memory_now
 from mathutils import Vector
 
 import addon
@@ -164,6 +165,25 @@ def frames(engine, kind, threads, count=5):
     return {"first_seconds": beside[0], "seconds": float(np.median(beside[1:]))}
 
 
+def steady(engine, threads, count=100):
+    """Return the bytes that the second half of an animation adds to the first: a head deforms, and its colour changes."""
+    scene = set_up("head", threads, 64, 36, 1)
+    scene.render.engine = engine
+    scene.render.use_persistent_data = True
+    bend = _bend_head(scene)
+    tree = next(thing for thing in scene.objects if thing.type == "MESH").active_material.node_tree
+    color = next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED").inputs["Base Color"]
+    held = []
+    for number in range(count):
+        bend(number)
+        color.default_value = (number / count, 0.5, 0.5, 1.0)
+        bpy.context.view_layer.update()
+        press_f12(scene)
+        if number in (count // 2, count - 1):
+            held.append(memory_now.held()["given"])
+    return {"growth_bytes": held[1] - held[0]}
+
+
 def denoised(engine, name, threads, width, height, counts, seed, folder):
     """Press F12 with denoising at each number of samples; write folder/COUNT.npy and return [(count, seconds)]."""
     scene = set_up(name, threads, width, height)
@@ -252,7 +272,7 @@ def versions():
     }
 
 
-TASKS = (f12, first_shown, frames, render, denoised, snapshot, prepare, accelerators, versions)
+TASKS = (f12, first_shown, frames, steady, render, denoised, snapshot, prepare, accelerators, versions)
 
 if __name__ == "__main__":
     registered(lambda: workers.answer(*TASKS))
