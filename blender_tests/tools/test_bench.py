@@ -33,7 +33,7 @@ def test_goals_take_means_over_scenes_of_the_same_picture():
 
 def test_goals_name_every_row_and_what_is_not_measured():
     verdicts = {verdict.what: verdict for verdict in goals.judge(_figures())}
-    assert len(verdicts) == 25
+    assert len(verdicts) == 27
     rate = verdicts["samples/s against Cycles"]
     assert (rate.measured, rate.reached) == ("2.00x, least 1.00x (two), 2 scenes", False)
     assert verdicts["efficiency against Cycles"].reached is True
