@@ -170,11 +170,16 @@ class Scene(_Handle, SceneProbes):
         self._instances = None if before is None else before._instances
 
     @classmethod
-    def upload(cls, snapshot, library=None, poll=None, release=False, before=None, stock=None):
-        """Return a committed scene with the accelerator and threads of the snapshot's settings. release: see fill."""
+    def upload(cls, snapshot, library=None, poll=None, release=False, before=None, stock=None, filled=None):
+        """Return a committed scene with the accelerator and threads of the snapshot's settings.
+
+        release: see fill. filled: is called when all records are copied, before the commit.
+        """
         scene = cls(library, before, stock)
         try:
             scene.fill(snapshot, poll, release)
+            if filled is not None:
+                filled()
             scene.commit(snapshot.settings.accelerator, snapshot.settings.threads, poll)
         except BaseException:
             scene.close()
@@ -304,9 +309,9 @@ class Session(_Handle, SessionParts, SessionProbes):
         return session
 
     @classmethod
-    def upload(cls, snapshot, library=None, poll=None, release=False, before=None, stock=None):
-        """Create the scene and the session of a snapshot; close() frees both. release: see Scene.fill."""
-        scene = Scene.upload(snapshot, library, poll, release, before, stock)
+    def upload(cls, snapshot, library=None, poll=None, release=False, before=None, stock=None, filled=None):
+        """Create the scene and the session of a snapshot; close() frees both. release, filled: see Scene.upload."""
+        scene = Scene.upload(snapshot, library, poll, release, before, stock, filled)
         try:
             session = cls(scene, snapshot.camera, snapshot.settings)
         except BaseException:

@@ -41,7 +41,9 @@ _SHOW_EVERY = 0.3
 _ERROR_SHARE = 0.03
 _MAX_REPORTS = 30
 # Bytes of a snapshot that may stay in memory until the first picture is shown.
-_MOST_KEPT = 1 << 26
+_MOST_KEPT = 1 << 24
+# Blender frees more objects in more than some hundredths of a second.
+_MANY_OBJECTS = 2000
 # Bytes of indices, half a vertex, normals and a UV map.
 _BYTES_OF_TRIANGLE = 48
 # Seconds of a sample so short that the picture needs no coarse one before it.
@@ -91,8 +93,8 @@ class LancerRenderEngine(bpy.types.RenderEngine):
                 layer, wanted = view_layer.name, tuple(passes.render_passes(scene, view_layer))
                 denoising, machines = wishes(scene, view_layer), many_machines.wanted(scene)
                 # The snapshot is complete, and Blender's evaluated data can be larger than the render: free it. Do not read the
-                # depsgraph from here on.
-                if self._later:
+                # depsgraph from here on. In a window the first picture comes before that takes long.
+                if not bpy.app.background and len(self._snapshot.instances) > _MANY_OBJECTS:
                     self._later.append(self.free_blender_memory)
                 else:
                     self.free_blender_memory()
@@ -231,8 +233,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         before = (kept and kept.scenes.get(layer)) or shared_scenes.nearest(snapshot)
         given = {"poll": self._is_over, "before": before, "stock": shared_scenes.stock}
         if kept is None:
-            session = Session.upload(snapshot, release=True, **given)
-            self._ahead.end()
+            session = Session.upload(snapshot, release=True, filled=self._ahead.end, **given)
             shared_scenes.remember(session.scene)
             return session
         uploaded = Scene.upload(snapshot, **given)
