@@ -198,6 +198,8 @@ class Painter:
                 if schedule.samples >= 2 * looked or samples > 1 and schedule.over:
                     looked = schedule.samples
                     schedule.look()
+                    # Blender gets control before the picture is read, too.
+                    yield
                 if shown.due or schedule.over:
                     with shown.spending():
                         about = ViewPicture(None, wanted, size, schedule.samples, schedule.error, False)

@@ -29,7 +29,7 @@ last_messages = ByScene()
 _TICK = 0.005  # seconds between two steps
 # Seconds from an edit for which a drawing waits for the first picture, and between two steps meanwhile. Blender draws a window
 # as a whole, which may take longer: the picture of the next drawing would be seen that much later.
-_PATIENCE, _NAP = 0.045, 0.001
+_PATIENCE, _NAP = 0.04, 0.001
 # Edits without waiting after one that was in vain: doubled each time up to this number.
 _MOST_SKIPPED = 16
 _MANY = 1 << 24

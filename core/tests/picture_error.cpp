@@ -2,6 +2,7 @@
 #include "render/picture_error.h"
 #include "sampling/sobol.h"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <random>
@@ -66,6 +67,57 @@ double real_error(const Case &scene, const LuminanceMap &map) {
 
 // Returns the share of a pixel covered by a bright noise-free surface with an oblique edge in front of a dark noise-free one.
 double covered(uint32_t x, uint32_t y) { return std::clamp(20.0 + 0.37 * double(y) - double(x), 0.0, 1.0); }
+
+// The sum of the squared differences of the 3 x 3 pixels around two pixels, beyond the bound for noise. Inside the picture
+// only.
+float excess_around(const LuminanceMap &map, int x, int y, int dx, int dy) {
+  float sum = 0.0f;
+  for (int v = y - 1; v <= y + 1; ++v)
+    for (int u = x - 1; u <= x + 1; ++u) {
+      const int other_u = u + dx, other_v = v + dy, width = int(map.width), height = int(map.height);
+      if (std::min({u, v, other_u, other_v}) < 0 || std::max(u, other_u) >= width || std::max(v, other_v) >= height)
+        continue;
+      const size_t p = size_t(v * width + u), q = size_t(other_v * width + other_u);
+      const float apart = map.mean[p] - map.mean[q];
+      sum += apart * apart - 4.0f * (map.variance[p] / map.count[p] + map.variance[q] / map.count[q]);
+    }
+  return sum;
+}
+
+TEST(PictureError, SimilarNeighboursAreThoseOfTheDefinition) {
+  // Small integers, whose sums are exact in any order. The heights are those of one band, of one band and a row, and of
+  // several.
+  std::mt19937 random(5);
+  for (const int height : {3, 33, 34, 80}) {
+    constexpr int kWidth = 11;
+    LuminanceMap map(Film(4, 4, 4, 1));
+    map.width = kWidth, map.height = uint32_t(height);
+    map.mean.clear(), map.variance.clear(), map.count.clear();
+    for (int i = 0; i < kWidth * height; ++i) {
+      map.mean.push_back(float(random() % 3));
+      map.variance.push_back(float(random() % 2));
+      map.count.push_back(4.0f);
+    }
+    for (const uint32_t threads : {1u, 3u}) {
+      const SimilarNeighbours found(map, threads);
+      for (int y = 0; y < height; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+          float count = 1.0f, mean = map.mean[size_t(y * kWidth + x)], variance = map.variance[size_t(y * kWidth + x)];
+          for (int v = std::max(0, y - 3); v <= std::min(height - 1, y + 3); ++v)
+            for (int u = std::max(0, x - 3); u <= std::min(kWidth - 1, x + 3); ++u)
+              if ((u != x || v != y) && excess_around(map, x, y, u - x, v - y) <= 0.0f) {
+                count += 1.0f;
+                mean += map.mean[size_t(v * kWidth + u)];
+                variance += map.variance[size_t(v * kWidth + u)];
+              }
+          const size_t at = size_t(y * kWidth + x);
+          ASSERT_EQ(found.count[at], count) << height << ": " << x << ", " << y;
+          ASSERT_EQ(found.mean[at], mean);
+          ASSERT_EQ(found.variance[at], variance);
+        }
+    }
+  }
+}
 
 TEST(PictureError, BarsOfEdgesAreNotThoseOfTheirCleanFlanks) {
   // For pixels with a coverage of at least a tenth, so that 64 samples are nearly Gaussian. They share a variance: over an edge

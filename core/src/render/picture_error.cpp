@@ -1,11 +1,14 @@
 #include "render/picture_error.h"
 
 #include "sampling/elementary.h"
+#include "simd/parallel.h"
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace lancer {
 
@@ -17,37 +20,39 @@ constexpr double kMost = 1e15;
 
 } // namespace
 
-LuminanceMap::LuminanceMap(const Film &film) : width(film.width()), height(film.height()) {
+LuminanceMap::LuminanceMap(const Film &film, uint32_t threads) : width(film.width()), height(film.height()) {
   const size_t pixels = size_t(width) * height;
   for (std::vector<float> *values : {&mean, &variance, &brightest, &count})
     values->assign(pixels, 0.0f);
-  std::vector<Film::Luminance> luminances;
+  const BuildContext context{threads};
   // Find the unit. The sum has the order of pixels, so that it is the same for tiles of any size.
   std::vector<double> means(pixels);
-  for (size_t i = 0; i < film.tile_count(); ++i) {
+  std::atomic<bool> all{true};
+  parallel_for(context, film.tile_count(), [&](size_t i) {
     const Film::Tile &tile = film.tile(i);
     if (tile.pixels() == 0)
-      continue;
-    luminances.resize(tile.pixels());
+      return;
+    std::vector<Film::Luminance> luminances(tile.pixels());
     if (film.luminances(tile, luminances) == 0) {
-      known = false;
-      continue;
+      all = false;
+      return;
     }
     for (uint32_t pixel = 0; pixel < tile.pixels(); ++pixel) {
       const glm::uvec2 at = tile.place(pixel);
       means[size_t(at.y) * width + at.x] = std::abs(luminances[pixel].mean);
     }
-  }
+  });
+  known = all;
   const double sum = std::accumulate(means.begin(), means.end(), 0.0);
   dark = !(sum > 0.0);
   unit = dark ? 1.0 : sum / double(pixels);
   // Lay out the tiles' statistics as a picture.
-  for (size_t i = 0; i < film.tile_count(); ++i) {
+  parallel_for(context, film.tile_count(), [&](size_t i) {
     const Film::Tile &tile = film.tile(i);
-    luminances.resize(tile.pixels());
+    std::vector<Film::Luminance> luminances(tile.pixels());
     const uint32_t samples = film.luminances(tile, luminances);
     if (samples == 0)
-      continue;
+      return;
     for (uint32_t pixel = 0; pixel < tile.pixels(); ++pixel) {
       const glm::uvec2 at = tile.place(pixel);
       const size_t to = size_t(at.y) * width + at.x;
@@ -56,7 +61,7 @@ LuminanceMap::LuminanceMap(const Film &film) : width(film.width()), height(film.
       brightest[to] = float(luminances[pixel].brightest / unit);
       count[to] = float(samples);
     }
-  }
+  });
 }
 
 namespace {
@@ -66,18 +71,28 @@ constexpr int kRadius = 3;
 // noise is estimated from eighteen differences, the ratio exceeds this limit by chance in less than 1 % of cases (F
 // distribution, 9 and 18 degrees of freedom).
 constexpr float kNoise = 4.0f;
+// Rows of a band, which fit into a processor's cache, and the rows around it: its sums depend on four of them. With multiples
+// of three, Pairs adds the sums of three rows in the order of the whole picture.
+constexpr size_t kBand = 33, kAround = 6;
+static_assert(kAround > kRadius && kAround % 3 == 0 && kBand % 3 == 0);
 
-// Processes the pairs of pixels with one offset: p, and q = p + (dx, dy).
+// Rows of a band of a picture, and the sums over their similar neighbours.
+struct Band {
+  size_t width, height;
+  const float *mean, *variance, *of_mean; // of_mean: variance of the mean
+  std::vector<float> counts, means, variances;
+};
+
+// Processes the pairs of pixels of a band with one offset: p, and q = p + (dx, dy).
 class Pairs {
 public:
-  Pairs(const LuminanceMap &map, const std::vector<float> &of_mean, SimilarNeighbours &sums)
-      : map_(map), of_mean_(of_mean), sums_(sums), excess_(map.width + 2) {
+  explicit Pairs(Band &band) : band_(band), excess_(band.width + 2) {
     for (std::vector<float> &row : rows_)
-      row.resize(map.width);
+      row.resize(band.width);
   }
 
   void add(int dx, int dy) {
-    const int height = int(map_.height) - dy;
+    const int height = int(band_.height) - dy;
     if (height <= 0)
       return;
     // Keep three rows of sums at a time; rows beyond the picture are 0.
@@ -95,13 +110,13 @@ public:
 
 private:
   int begin(int dx) const { return std::max(0, -dx); }
-  int end(int dx) const { return int(map_.width) - std::max(0, dx); }
+  int end(int dx) const { return int(band_.width) - std::max(0, dx); }
 
   // Sums, over three pairs in a row, the excess of squared differences over the bound for noise.
   void sum_row(int y, int dx, int dy, std::vector<float> &row) {
-    const size_t p = size_t(y) * map_.width, q = size_t(y + dy) * map_.width;
-    const float *mean_p = map_.mean.data() + p, *mean_q = map_.mean.data() + q;
-    const float *noise_p = of_mean_.data() + p, *noise_q = of_mean_.data() + q;
+    const size_t p = size_t(y) * band_.width, q = size_t(y + dy) * band_.width;
+    const float *mean_p = band_.mean + p, *mean_q = band_.mean + q;
+    const float *noise_p = band_.of_mean + p, *noise_q = band_.of_mean + q;
     float *excess = excess_.data() + 1;
     std::fill(excess_.begin(), excess_.end(), 0.0f);
     for (int x = begin(dx); x < end(dx); ++x) {
@@ -113,7 +128,7 @@ private:
   }
 
   void join(int y, int dx, int dy) {
-    const size_t p = size_t(y) * map_.width, q = size_t(y + dy) * map_.width;
+    const size_t p = size_t(y) * band_.width, q = size_t(y + dy) * band_.width;
     float *similar = excess_.data();
     for (int x = begin(dx); x < end(dx); ++x)
       similar[x] = rows_[0][size_t(x)] + rows_[1][size_t(x)] + rows_[2][size_t(x)] <= 0.0f ? 1.0f : 0.0f;
@@ -125,30 +140,42 @@ private:
       for (int x = begin(dx); x < end(dx); ++x)
         to_q[x + dx] += similar[x] * (values ? values[p + size_t(x)] : 1.0f);
     };
-    add(sums_.count, nullptr);
-    add(sums_.mean, map_.mean.data());
-    add(sums_.variance, map_.variance.data());
+    add(band_.counts, nullptr);
+    add(band_.means, band_.mean);
+    add(band_.variances, band_.variance);
   }
 
-  const LuminanceMap &map_;
-  const std::vector<float> &of_mean_;
-  SimilarNeighbours &sums_;
+  Band &band_;
   std::array<std::vector<float>, 3> rows_;
   std::vector<float> excess_; // of a row, with a pair beyond each end
 };
 
 } // namespace
 
-SimilarNeighbours::SimilarNeighbours(const LuminanceMap &map)
-    : count(map.size(), 1.0f), mean(map.mean), variance(map.variance) {
+SimilarNeighbours::SimilarNeighbours(const LuminanceMap &map, uint32_t threads)
+    : count(map.size()), mean(map.size()), variance(map.size()) {
   std::vector<float> of_mean(map.size());
   for (size_t i = 0; i < map.size(); ++i)
     of_mean[i] = map.count[i] > 0.0f ? map.variance[i] / map.count[i] : 0.0f;
-  Pairs pairs(map, of_mean, *this);
-  // Visit each pair once, from its upper or left pixel.
-  for (int dy = 0; dy <= kRadius; ++dy)
-    for (int dx = dy == 0 ? 1 : -kRadius; dx <= kRadius; ++dx)
-      pairs.add(dx, dy);
+  // The rows around a band give its sums their other halves, in the same order as those of a whole picture.
+  parallel_for(BuildContext{threads}, (map.height + kBand - 1) / kBand, [&](size_t number) {
+    const size_t from = number * kBand, to = std::min(from + kBand, size_t(map.height));
+    const size_t first = from - std::min(from, kAround), last = std::min(to + kAround, size_t(map.height));
+    const size_t start = first * map.width, end = last * map.width;
+    Band band{map.width, last - first, map.mean.data() + start, map.variance.data() + start, of_mean.data() + start, {}, {},
+              {}};
+    band.counts.assign(end - start, 1.0f);
+    band.means.assign(map.mean.begin() + ptrdiff_t(start), map.mean.begin() + ptrdiff_t(end));
+    band.variances.assign(map.variance.begin() + ptrdiff_t(start), map.variance.begin() + ptrdiff_t(end));
+    Pairs pairs(band);
+    // Visit each pair once, from its upper or left pixel.
+    for (int dy = 0; dy <= kRadius; ++dy)
+      for (int dx = dy == 0 ? 1 : -kRadius; dx <= kRadius; ++dx)
+        pairs.add(dx, dy);
+    const size_t own = (from - first) * map.width, size = (to - from) * map.width;
+    for (const auto &[sums, result] : {std::pair{&band.counts, &count}, {&band.means, &mean}, {&band.variances, &variance}})
+      std::copy_n(sums->begin() + ptrdiff_t(own), size, result->begin() + ptrdiff_t(from * map.width));
+  });
 }
 
 namespace {
@@ -200,8 +227,8 @@ double gaussian_reach(double confidence) {
   return low;
 }
 
-RelativeVariance::RelativeVariance(const LuminanceMap &map) : own(map.size()), shared(map.size()) {
-  const SimilarNeighbours similar(map);
+RelativeVariance::RelativeVariance(const LuminanceMap &map, uint32_t threads) : own(map.size()), shared(map.size()) {
+  const SimilarNeighbours similar(map, threads);
   const float floor = map.floor();
   for (size_t pixel = 0; pixel < map.size(); ++pixel) {
     const float level = std::abs(similar.mean[pixel] / similar.count[pixel]) + floor;

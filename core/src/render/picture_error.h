@@ -18,7 +18,8 @@ struct LuminanceMap {
   // [height][width]; variance: of one sample; the variance of the mean is variance / count.
   std::vector<float> mean, variance, brightest, count;
 
-  explicit LuminanceMap(const Film &film);
+  // threads: the most that read the film.
+  explicit LuminanceMap(const Film &film, uint32_t threads = 1);
 
   size_t size() const { return mean.size(); }
   // Added to each luminance that is a divisor, so that black pixels do not dominate: 1 % of the mean.
@@ -38,7 +39,7 @@ struct LuminanceMap {
 struct SimilarNeighbours {
   std::vector<float> count, mean, variance;
 
-  explicit SimilarNeighbours(const LuminanceMap &map);
+  explicit SimilarNeighbours(const LuminanceMap &map, uint32_t threads = 1);
 };
 
 // The error of a whole picture.
@@ -64,7 +65,7 @@ struct RelativeVariance {
   // the mean over the similar neighbours.
   std::vector<float> own, shared;
 
-  explicit RelativeVariance(const LuminanceMap &map);
+  explicit RelativeVariance(const LuminanceMap &map, uint32_t threads = 1);
 };
 
 // confidence: of the interval, in (0, 1). A pixel's own halves underestimate the error where light is rare: pixels that have

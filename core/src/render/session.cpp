@@ -146,7 +146,7 @@ std::vector<lancer_range> Session::plan(double target, double confidence) {
   require_ready();
   if (!film_.halves())
     throw Error(Fault::State, "session: it was not created to be refined; set refines in its settings");
-  const LuminanceMap map(film_);
+  const LuminanceMap map(film_, pool_.size());
   if (!map.known)
     throw Error(Fault::State,
                 "session: every pixel needs " + std::to_string(Film::kLeastSamples) + " samples before it is refined");
@@ -154,7 +154,7 @@ std::vector<lancer_range> Session::plan(double target, double confidence) {
     if (film_.tile(i).pixels() > 0 && !std::has_single_bit(film_.tile(i).count))
       throw Error(Fault::State, "session: " + std::to_string(film_.tile(i).count) +
                                     " samples are not a power of two; only powers of two can be doubled");
-  const RelativeVariance relative(map);
+  const RelativeVariance relative(map, pool_.size());
   const PictureError error = picture_error(map, relative, confidence);
   // The error at which its upper bound, together with the light that may be missing, meets the target.
   const double bound = error.high + error.cannot_exclude;
@@ -311,7 +311,7 @@ Session::State Session::wait(uint32_t milliseconds, Progress &progress) {
 
 void Session::read(Pass pass, std::span<float> out) const {
   if (pass == Pass::Error) {
-    const std::vector<float> bars = error_bars(LuminanceMap(film_));
+    const std::vector<float> bars = error_bars(LuminanceMap(film_, pool_.size()));
     std::copy(bars.begin(), bars.end(), out.begin());
     return;
   }
@@ -333,9 +333,9 @@ SampleResult Session::replay(const SampleAddress &address, std::vector<PathVerte
 
 SessionError Session::error(double confidence) const {
   SessionError result;
-  const LuminanceMap map(film_);
+  const LuminanceMap map(film_, pool_.size());
   if (map.known)
-    result.picture = picture_error(map, RelativeVariance(map), confidence);
+    result.picture = picture_error(map, RelativeVariance(map, pool_.size()), confidence);
   double light = 0.0, samples = 0.0;
   for (size_t i = 0; i < map.size(); ++i) {
     light += std::abs(double(map.mean[i])) * map.unit * map.count[i];
