@@ -58,7 +58,9 @@ class Stock:
 
     def known(self, kind, record):
         """Return the equal record of a Part of a mesh or an image; the record itself if there is none."""
-        return next((part.record for part in _living(self._by_key, key_of(kind, record)) if part.record == record), record)
+        # Another thread may take the record out of a Part.
+        records = (part.record for part in _living(self._by_key, key_of(kind, record)))
+        return next((other for other in records if other is not None and other == record), record)
 
     def _find(self, kind, record, images):
         for part in _living(self._by_identity, id(record)):

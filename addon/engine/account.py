@@ -1,5 +1,7 @@
 """The account of a rendered view layer: in the file's metadata, in engine.last_statistics, and as lines for the user."""
 
+import math
+
 import bpy
 
 from ..denoise import view_layer as denoise
@@ -25,7 +27,7 @@ def account(engine, scene, layer, session, schedule, denoised, uses):
     numbers["uses"] = uses
     kept = kept_pictures.of(scene)
     if kept is not None:
-        kept.sample_seconds = numbers["seconds"] / max(1, schedule.samples)
+        kept.sample_seconds = numbers["seconds"] / schedule.samples if schedule.samples else math.inf
         numbers.update(kept.counts, kept_bytes=kept.bytes)
     # Only metadata of the result from get_result reaches the file.
     stamped = engine.get_result()

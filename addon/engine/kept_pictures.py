@@ -30,7 +30,7 @@ class Following:
         self._key = self._parts = None
 
     def take(self, depsgraph, layers):
-        """Return the Parts for an export of the depsgraph, to be given back; None if Blender does not keep it as it is.
+        """Return the Parts for an export of the depsgraph, to be given back; None if the next picture has another depsgraph.
 
         layers: the number of view layers of the picture, which take turns in one depsgraph. A depsgraph tells its updates once:
         after an export that failed, the next one reads everything.
@@ -44,6 +44,8 @@ class Following:
         return parts if parts is not None and key == before else Parts(watches=True)
 
     def give_back(self, parts):
+        # The function belongs to the engine, which owns this object.
+        parts.images.obey = None
         self._parts = parts
 
 

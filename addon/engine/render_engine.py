@@ -165,6 +165,9 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         except Exception as error:
             logging.getLogger(__name__).exception("render failed")
             text = f"{type(error).__name__}: {error}"
+        # The checks may tell why.
+        with contextlib.suppress(Exception):
+            self._do_later()
         self._snapshot = None
         self._picture.messages.add(text, severity=Severity.FAILED)
         last_messages[scene] = self._picture.messages
@@ -334,9 +337,9 @@ class LancerRenderEngine(bpy.types.RenderEngine):
 
 
 def _size(snapshot):
-    """Return about the bytes of a snapshot's triangles and texels: there may be 100 000 meshes."""
+    """Return about the bytes of a snapshot's triangles, instances and texels: there may be 100 000 meshes."""
     triangles = sum(len(mesh.triangles) for mesh in snapshot.meshes)
-    return triangles * _BYTES_OF_TRIANGLE + sum(map(bytes_in_memory, snapshot.images))
+    return triangles * _BYTES_OF_TRIANGLE + snapshot.instances.matrices.nbytes + sum(map(bytes_in_memory, snapshot.images))
 
 
 def register():

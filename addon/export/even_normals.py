@@ -23,7 +23,7 @@ def with_even_normals(meshes, table, geometries, materials, known):
     """Return (meshes, table) with other normals for the meshes that Cycles transforms to the world.
 
     geometries: of each name of the table; equal for objects that share one geometry in Cycles. materials: by the table's slots.
-    known: the meshes of the last call, which this call replaces by its own: an equal one is the same object.
+    known: a dict in which a call keeps its results for the next one, which returns the same objects for the same meshes.
     """
     numbers = np.unique(np.array(geometries, np.int64).reshape(-1), return_inverse=True)[1][table.name_indices]
     alone = (np.bincount(numbers)[numbers] == 1) & (table.kinds == _MESH) if len(numbers) else np.zeros(0, bool)

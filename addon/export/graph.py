@@ -71,6 +71,7 @@ class NodeGraph(NodeBuilder):
         # For a lamp: a function that returns four numbers by the name of an ObjectAttribute or of LAMP_FACTS.
         self.lamp_value = None
         self.texts = set()  # (identity, contents) of the texts that the nodes read
+        self.files = set()  # file_state() of the files that the nodes read, images apart
         self.reads_layer = False  # whether the nodes read properties of the view layer, the scene or its world
         self.reads_time = False  # whether the nodes read the frame or the time
         self.material_index = 0  # of the owner; 0 if the owner is no material
@@ -89,7 +90,7 @@ class NodeGraph(NodeBuilder):
     @property
     def sources(self):
         """The Sources that the nodes read."""
-        return Sources(frozenset(self.objects), self.reads_layer, self.reads_time, frozenset(self.texts))
+        return Sources(frozenset(self.objects), self.reads_layer, self.reads_time, frozenset(self.texts), frozenset(self.files))
 
     def tree_of(self, block):
         """Return the nodes of a material, world or light as Cycles reads them; None without any."""

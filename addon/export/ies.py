@@ -11,6 +11,7 @@ from ..bindings.enums import Coordinate, MathOperation, NodeKind, Space
 from ..host.by_scene import identity
 from ..messages.severity import Severity
 from .coordinates import NORMALS, coordinate, spaces
+from .shader_cache import file_state
 
 # Candela to the watts of a lamp, for the luminous efficacy of D65, 177.83 lm/W.
 _WATTS_PER_CANDELA = 0.0706650768394
@@ -78,6 +79,7 @@ def _text(graph, site):
         # Cycles ends each line of a text.
         return text + "\n"
     path = bpy.path.abspath(node.filepath, library=node.id_data.library)
+    graph.files.add(file_state(path))
     try:
         with open(path, encoding="latin-1", newline="") as file:
             return file.read()

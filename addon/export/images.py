@@ -54,7 +54,7 @@ class Images:
         key = (identity(image), image.colorspace_settings.name, image.alpha_mode, seen, has_mipmaps)
         if key not in self._ranges:
             if self.watches:
-                self._states[key] = image_state(image, seen, by_contents=False)
+                self._states[key] = self._state(image, seen)
             with main_thread.obeying(self.obey):
                 read = self._reader(read_all, in_memory, has_mipmaps)
                 # Cycles shows unsaved strokes in previews.
@@ -96,8 +96,9 @@ class Images:
                 numbers = range(number, number + len(pictures))
                 break
         self._free.difference_update(numbers)
+        pictures = [shared_scenes.stock.known(ObjectKind.IMAGE, picture) for picture in pictures]
         self._held += sum(map(bytes_in_memory, pictures))
-        self.list[numbers.start : numbers.stop] = [shared_scenes.stock.known(ObjectKind.IMAGE, picture) for picture in pictures]
+        self.list[numbers.start : numbers.stop] = pictures
         self.placed += len(pictures)
         return numbers.start
 
@@ -117,9 +118,13 @@ class Images:
         for image in bpy.data.images if keys else ():
             own = keys.pop(identity(image), ())
             # A key has the seen file as its fourth part.
-            if any(self._states[key] is None or self._states[key] != image_state(image, key[3], False) for key in own):
+            if any(self._states[key] is None or self._states[key] != self._state(image, key[3]) for key in own):
                 found.add(identity(image))
         return found | set(keys)
+
+    def _state(self, image, seen):
+        state = image_state(image, seen, by_contents=False)
+        return None if state is None else (state, has_cached_file(self.texture_cache, image, seen))
 
     def forget(self, changed, used):
         """Drop the images whose identity is in changed and those whose number is not in used."""
@@ -131,7 +136,7 @@ class Images:
         self._tables = {key: number for key, number in self._tables.items() if number in used}
         kept = {number for found in self._ranges.values() if found is not None for number in range(found[0], sum(found))}
         for number in range(len(self.list)):
-            if number not in kept and number not in used:
+            if number not in kept and number not in used and number not in self._free:
                 self._held -= bytes_in_memory(self.list[number])
                 self.list[number] = _NOTHING
                 self._free.add(number)

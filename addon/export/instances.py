@@ -33,6 +33,17 @@ class Places(NamedTuple):
     placements: np.ndarray  # of each row, -1 for none
     exact: tuple  # (4, 4) by those numbers
     one_by_one: bool
+    signs: array  # of all entries, see sign_of
+    space: object  # the ExportOptions' own
+
+    def shows_the_same(self, depsgraph):
+        """Whether the entries are those of the same objects, in the same order, hidden or not as before."""
+        signs, count = self.signs, len(self.signs)
+        number = -1
+        for number, entry in enumerate(depsgraph.object_instances):
+            if number >= count or sign_of(entry, entry.object, self.space) != signs[number]:
+                return False
+        return number + 1 == count
 
     def matrices(self, depsgraph):
         """(rows, 3, 4)."""
@@ -52,6 +63,13 @@ class Places(NamedTuple):
         columns = np.empty(16 * self.count, np.float32)
         walk.foreach_get("matrix_world", columns)
         return columns.reshape(-1, 4, 4)
+
+
+def sign_of(entry, thing, space):
+    """Return a number that differs for other objects and for hidden ones; space: a SpaceView3D that hides some, or None."""
+    hidden = space is not None and not thing.visible_in_viewport_get(space)
+    # Addresses are multiples of 8.
+    return thing.original.as_pointer() | hidden | entry.show_self << 1
 
 
 class Instances:
@@ -82,6 +100,7 @@ class Instances:
         self._entries = array("I")
         self._entry_count = 0
         self._first_is_text = False
+        self._signs = array("Q")
         self.places = None
 
     @property
@@ -91,12 +110,15 @@ class Instances:
     def collect(self, poll):
         shows_surfaces = self.depsgraph.view_layer.use_solid
         rows, row_of, entries = self._rows, self._row_of, self._entries
+        signs, space = self._signs, self._space
         number = -1
         for number, entry in enumerate(self.depsgraph.object_instances):
             if number % _POLL_EVERY == 0:
                 poll()
             thing = entry.object
-            if self._space is not None and not thing.visible_in_viewport_get(self._space):
+            sign = sign_of(entry, thing, space)
+            signs.append(sign)
+            if sign & 1:
                 continue
             if thing.type != "MESH":
                 if number == 0:
@@ -110,7 +132,7 @@ class Instances:
                 continue
             # Evaluated data lives as long as the depsgraph, but the objects of entries are reused: store addresses only.
             if entry.is_instance:
-                key = thing.original.as_pointer(), self._data_key(entry, thing), self._narrowed_by(entry.parent)
+                key = sign & ~7, self._data_key(entry, thing), self._narrowed_by(entry.parent)
                 row = rows.get(key)
                 if row is None:
                     row = rows[key] = self._new_row(thing, entry.instance_object, *key, poll)
@@ -118,7 +140,7 @@ class Instances:
                 # An object that is no instance appears once: no cache is needed.
                 if number % _POLL_EVERY_OBJECT == 0:
                     poll()
-                row = self._new_row(thing, thing, thing.original.as_pointer(), self._data_key(entry, thing), None, poll)
+                row = self._new_row(thing, thing, sign & ~7, self._data_key(entry, thing), None, poll)
             if row >= 0:
                 row_of.append(row)
                 entries.append(number)
@@ -142,7 +164,9 @@ class Instances:
         placements = column([look.placement for look in looks], np.int32)
         leaks = _LEAKS_FIRST and self._first_is_text
         entries = np.frombuffer(self._entries, np.uint32)
-        self.places = Places(entries, self._entry_count, placements, tuple(self._objects.placements), leaks)
+        self.places = Places(
+            entries, self._entry_count, placements, tuple(self._objects.placements), leaks, self._signs, self._space
+        )
         matrices = self.places.matrices(self.depsgraph)
         poll()
         infos = None

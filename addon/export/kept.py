@@ -1,4 +1,4 @@
-"""A cache of meshes and images for the frames of an animation, and for renders of one scene with Persistent Data.
+"""A cache of meshes and images for the frames of an animation, and for pictures of several layers with Persistent Data.
 
 Each entry keeps its sources, all data from which it was computed, and is reused only if the sources are equal bit by bit. So
 each frame reads Blender's data again, but computes nothing from equal data and decodes no file twice. An entry that a frame

@@ -21,6 +21,16 @@ _HAS_TERMINATOR = _TERMINATOR in bpy.types.Object.bl_rna.properties
 _HAS_HOLDOUT = "is_holdout" in bpy.types.Object.bl_rna.properties
 
 
+class _Own(NamedTuple):
+    """The add-on's properties of an object."""
+
+    shape: str = "MESH"
+    shading: str = "AS_MESH"
+
+
+_PLAIN = _Own()
+
+
 class Look(NamedTuple):
     """A row of the instance table without transform and name."""
 
@@ -104,7 +114,8 @@ class Objects:
         # Without slots only nodes give materials to the mesh.
         of_mesh = () if materials or is_divided and not may_make_instances(owner) else list(thing.data.materials)
         slots = tuple([self.materials.number(material, name) for material in materials or of_mesh or [None]])
-        own = owner.lancer
+        # Reading a property that is not set would set it, after which Blender copies it with the object.
+        own = owner.lancer if owner.is_property_set("lancer") else _PLAIN
         kind = InstanceKind[own.shape]
         mesh, placement = 0, -1
         if kind == InstanceKind.MESH:

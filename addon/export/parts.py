@@ -17,9 +17,11 @@ import numpy as np
 from ..bindings.enums import ObjectKind
 from ..host import shared_scenes
 from ..host.by_scene import identity
-from .animated import only_moves, traits
+from .animated import has_traits, only_moves, traits
 from .images import Images
 from .shader_cache import ShaderCache
+
+_MOVES_MEAN_MORE = bpy.app.version < (4, 2)
 
 
 class _Mesh(NamedTuple):
@@ -71,14 +73,19 @@ class Parts:
         self._images_before = self.images.placed
         self.images.obey = obey
         moved, others = _updates(depsgraph)
-        forgotten = self._forget(moved, others, depsgraph.scene.frame_current_final)
-        # Each export remembers the traits of all animated objects.
-        moves_only = [self._moves_only(update) for update in others]
         last, self._last = self._last, None
-        if last is None or forgotten or not all(moves_only) or state != last.state:
+        is_other = last is None or state != last.state
+        forgotten = self._forget(moved, others, is_other, depsgraph.scene.frame_current_final)
+        # Each export remembers the traits of all objects that have some.
+        moves_only = [self._moves_only(update) for update in others]
+        if is_other or forgotten or not all(moves_only):
             return None
         # An attribute may be a property that moves with its object.
         if last.snapshot.instances.attributes or last.places is None:
+            return None
+        # The scene's update also stands for what a view hides, and for other relations between objects, which shade all anew.
+        may_differ = last.places.space is not None or not moved
+        if may_differ and any(update.is_scene for update in others) and not last.places.shows_the_same(depsgraph):
             return None
         try:
             matrices = last.places.matrices(depsgraph)
@@ -93,15 +100,17 @@ class Parts:
 
     def _moves_only(self, update):
         """Whether an update moves an object at most."""
-        if update.is_animated:
-            # An edit of the object's other properties is reported in the same way.
-            now = traits(update.block)
-            before, self._traits[update.key] = self._traits.get(update.key), now
-            return now == before and not update.reshapes and only_moves(update.block)
-        return update.is_harmless
+        if not update.has_traits:
+            return update.is_harmless
+        now = traits(update.block)
+        before, self._traits[update.key] = self._traits.get(update.key), now
+        return now == before and update.may_move and only_moves(update.block)
 
-    def _forget(self, moved, others, frame):
-        """Drop what the updates change; return whether anything was dropped. moved: objects that have only moved."""
+    def _forget(self, moved, others, is_other, frame):
+        """Drop what the updates change; return whether anything was dropped.
+
+        moved: objects that have only moved. is_other: whether settings have changed, for which Blender may have no update.
+        """
         changed = {update.key for update in others}
         reshaped = {update.key for update in others if update.reshapes}
         pictures = {update.key for update in others if update.is_picture} | self.images.changed()
@@ -112,8 +121,7 @@ class Parts:
         def places():
             return {*map(identity, moved), *(update.key for update in others if update.moves)}
 
-        is_changed = bool(moved or others)
-        forgotten = self.shaders.forget(changed, is_changed, places, pictures, later)
+        forgotten = self.shaders.forget(changed, is_other or bool(moved or others), places, pictures, later)
         if pictures:
             self.images.forget(pictures, self.shaders.numbers())
         return forgotten or before != len(self._meshes)
@@ -160,25 +168,31 @@ def _updates(depsgraph):
         block = update.id
         # A lamp's light depends on its transform and must be read again.
         is_object = isinstance(block, bpy.types.Object) and block.type != "LIGHT"
-        if is_object and moves and not (reshapes or shades):
+        if is_object and moves and not (reshapes or shades or has_traits(block)):
             moved.append(block)
         else:
             others.append(_Update(block, is_object, moves, reshapes, shades))
+    # Old versions report other materials of an object as its move.
+    if _MOVES_MEAN_MORE and any(update.is_scene for update in others):
+        others += [_Update(block, True, True, False, False) for block in moved]
+        moved = []
     return moved, others
 
 
 class _Update:
-    """One update of the depsgraph, classified for the export. is_object: not for lamps."""
+    """One update of the depsgraph, classified for the export. is_object: False for lamps."""
 
     def __init__(self, block, is_object, moves, reshapes, shades):
         self.key = identity(block)
         self.is_picture = isinstance(block, bpy.types.Image)
+        self.is_scene = isinstance(block, bpy.types.Scene)
         self.moves = moves
         # A new material updates the shading of all its objects and meshes, not their geometry.
         self.reshapes = reshapes
+        self.has_traits = is_object and has_traits(block)
         # An object with an action is reported as shaded anew in each frame.
-        self.is_animated = is_object and shades and block.animation_data is not None
+        self.may_move = is_object and not reshapes and (not shades or block.animation_data is not None)
         # Each export reads the camera and compares the scene's state, and the objects of an action are reported themselves.
-        self.is_harmless = isinstance(block, (bpy.types.Action, bpy.types.Camera, bpy.types.Scene))
+        self.is_harmless = self.is_scene or isinstance(block, (bpy.types.Action, bpy.types.Camera))
         # Evaluated data lives as long as the depsgraph is not evaluated again.
         self.block = block

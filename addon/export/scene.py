@@ -93,7 +93,7 @@ def export_scene(depsgraph, options=None, poll=None):
     )
     obey()
     if parts is not None:
-        # The instance of a lamp moves with its instancer; the size of an object decides how it is divided.
+        # The instance of a lamp moves with its instancer; the places of object and camera decide how a mesh is divided.
         moves_freely = not (instances.has_lamp_instances or divider.depends_on_places)
         parts.end(snapshot, messages, instances.places if moves_freely else None, instances.geometries, state)
     return _placed(snapshot, instances.geometries, messages, options, camera, settings), messages

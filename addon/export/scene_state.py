@@ -10,12 +10,13 @@ _OF_COLLECTIONS = ("exclude", "hide_viewport", "holdout", "indirect_only")
 
 
 def scene_state(depsgraph):
-    """Return a value that differs if any setting does that objects, lamps and materials depend on. Cameras are not included."""
+    """Return a value that differs if a setting does that objects, lamps and materials depend on, the camera apart."""
     scene, layer = depsgraph.scene, depsgraph.view_layer
     # Blender writes a warning to the console if Cycles' choice of a device or a denoiser is not available.
     of_cycles = [_values(getattr(owner, "cycles", None), _NUMBERS) for owner in (scene, layer)]
     world = getattr(layer, "world_override", None) or scene.world
-    blocks = tuple(None if block is None else block.as_pointer() for block in (world, layer.material_override))
+    dicing = getattr(getattr(scene, "cycles", None), "dicing_camera", None)
+    blocks = tuple(None if block is None else block.as_pointer() for block in (world, layer.material_override, dicing))
     return *map(_values, (scene.render, scene.lancer, layer)), of_cycles, blocks, tuple(_collections(layer.layer_collection))
 
 

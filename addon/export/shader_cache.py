@@ -1,5 +1,6 @@
-"""The exports of materials, worlds and lamps by their data-blocks, kept from one export of a window to the next."""
+"""The exports of materials, worlds and lamps by their data-blocks, kept from one export with Parts to the next."""
 
+import os
 from typing import NamedTuple
 
 import bpy
@@ -17,6 +18,7 @@ class Sources(NamedTuple):
     layer: bool = False  # properties of the view layer, the scene or its world
     time: bool = False  # the frame or the time
     texts: frozenset = frozenset()  # (identity, contents)
+    files: frozenset = frozenset()  # (path, time, size)
 
 
 class _Shader(NamedTuple):
@@ -149,7 +151,10 @@ class ShaderCache:
             sources = shader.exported.sources
             by_objects = sources.objects and sources.objects & moved()
             by_others = shader.pictures & pictures or by_objects or is_changed and sources.layer
-            return not (by_others or shader.with_time and later) and all(map(texts.has, sources.texts))
+            is_old = by_others or shader.with_time and later
+            return (
+                not is_old and all(map(texts.has, sources.texts)) and all(file_state(file[0]) == file for file in sources.files)
+            )
 
         self._known = {key: variants for key, variants in self._known.items() if key not in changed}
         for variants in self._known.values():
@@ -166,6 +171,15 @@ class ShaderCache:
 
     def _all(self):
         return [shader for variants in self._known.values() for shader in variants]
+
+
+def file_state(path):
+    """Return path, time and size of a file; the time and size are None if the file is missing."""
+    try:
+        told = os.stat(path)
+    except OSError:
+        return path, None, None
+    return path, told.st_mtime_ns, told.st_size
 
 
 class _Texts:

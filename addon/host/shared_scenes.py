@@ -35,7 +35,7 @@ class Ahead:
 
 
 _committed = weakref.WeakSet()
-_lock = threading.Lock()  # the render thread and the main thread have scenes
+_lock = threading.Lock()  # the render thread and the main thread add and look for scenes
 
 
 def remember(scene):

@@ -54,7 +54,8 @@ class Viewport:
         self._library = None  # the painter's messages that are already in _messages
         self._drawn = None  # (ViewPicture, failure) on the screen
         self._edited = 0.0  # time of the last update
-        self._skip = self._skipped = 0  # edits for which no drawing waits: after each in vain, and of these so far
+        self._skip = 0  # edits after the last one, for which no drawing waits
+        self._skipped = 0  # of these, the edits so far
         self.painter = Painter()
         weakref.finalize(self, self.painter.close)
         _open.add(self)
@@ -175,6 +176,8 @@ class Viewport:
             self._skipped += 1
             return
         end = self._edited + _PATIENCE
+        if time.monotonic() > end:
+            return
         while not (shows := self._shows_edits()) and self.painter.is_busy and time.monotonic() < end:
             time.sleep(_NAP)
             self.painter.step()

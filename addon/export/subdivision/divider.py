@@ -77,7 +77,8 @@ class Divider:
     @property
     def depends_on_places(self):
         """Whether an object is divided anew once its place or that of the camera changes."""
-        return not self._in_view and any(found is not None and found.in_pixels for found in self._settings.values())
+        follows = not self._in_view or self._chosen is not None
+        return follows and any(found is not None and found.in_pixels for found in self._settings.values())
 
     def key(self, settings, owner):
         """Return what the mesh of an evaluated object depends on besides Blender's data."""

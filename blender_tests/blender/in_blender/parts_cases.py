@@ -144,6 +144,11 @@ def set_to(path, value):
     return edit
 
 
+def _swap_hidden():
+    for name, hidden in (("Plain", True), ("Other", False)):
+        bpy.data.objects[name].hide_set(hidden)
+
+
 EDITS = {
     "nothing": set_to("scene.cursor.location", (1, 2, 3)),
     "moved object": set_to("objects['Lone'].location", (6, 1, 0)),
@@ -163,6 +168,8 @@ EDITS = {
     "painted picture": _paint,
     "other picture": _swap_pictures,
     "modifier": _bend,
+    "hidden in the view": lambda: bpy.data.objects["Other"].hide_set(True),
+    "others hidden in the view": _swap_hidden,
 }
 
 
@@ -228,9 +235,9 @@ def _with_pictures(given, shader):
 
 
 def edits():
-    """Return {edit: counts of all exports that it caused, same snapshot, same messages}."""
+    """Return {edit: counts of all exports that it caused, same snapshot, same messages}, and whether strokes are shown."""
     build()
-    return results(EDITS)
+    return {**results(EDITS), "strokes": bpy.app.version >= (5, 2)}
 
 
 def results(edits):

@@ -33,9 +33,25 @@ def _collect():
 
 
 def _shape():
-    """Set a property of the add-on as a panel does: a script's change is not reported."""
+    """Blender does not report a script's change of an add-on's property, but that the object moves."""
     bpy.data.objects["Twin"].lancer.shape = "SPHERE"
-    bpy.data.objects["Twin"].update_tag()
+    bpy.data.objects["Twin"].location.y = 0.5
+
+
+def _parent():
+    """Blender then evaluates the objects in another order."""
+    bpy.data.objects["Plain"].parent = bpy.data.objects["Lone"]
+
+
+def _link():
+    bpy.data.objects["Other"].material_slots[0].link = "OBJECT"
+
+
+def _drive():
+    """Hide two objects by drivers, the one before the third frame and the other from it on."""
+    bpy.context.scene.frame_set(2)
+    for name, expression in (("Twin", "frame < 3"), ("Keyed", "frame >= 3")):
+        bpy.data.objects[name].driver_add("hide_render").driver.expression = expression
 
 
 def _both_at_once():
@@ -57,6 +73,9 @@ _EDITS_OF_PICTURES = {
     "shown object": set_to("objects['Other'].hide_render", False),
     "object index": set_to("objects['Twin'].pass_index", 3),
     "shape": _shape,
+    "parent": _parent,
+    "moved parent": set_to("objects['Lone'].location", (6, 2, 0)),
+    "link of a slot": _link,
     "another world": lambda: setattr(bpy.context.scene, "world", bpy.data.worlds.new("Another")),
     "no surfaces": set_to("bpy.context.view_layer.use_solid", False),
     "collection": _collect,
@@ -72,6 +91,8 @@ _EDITS_OF_PICTURES = {
     "keyed index": lambda: _animate("Pictured", "pass_index", 1, 5),
     "frame with index": _later,
     "moved for a while": set_to("objects['Pictured'].delta_location", (0, 0, 1)),
+    "drivers": _drive,
+    "driven": _later,
 }
 
 
