@@ -11,22 +11,29 @@ from addon.viewport import viewport
 
 
 def waits(folder):
-    """Return for drawings that wait long or not at all whether the first one after an edit shows it, and the edits to skip."""
-    build(samples=1)
+    """Return whether the first drawing after an edit shows it, and how many edits are drawn without waiting after it.
+
+    In the second of four edits the drawing is told that its picture does not come.
+    """
+    build(samples=0)
     view = View()
     view.render()
-    yield from until(finished)
+    yield from until(lambda: shown() is not None and shown().painter.picture is not None)
     result = {}
-    for name, patience in (("long", 60.0), ("not", 0.0), ("skipped", 60.0), ("long again", 60.0)):
+    for name, patience in (("long", 60.0), ("in vain", 0.5), ("skipped", 60.0), ("long again", 60.0)):
         viewport._PATIENCE = patience
-        before = shown().painter.picture
+        before = shown().painter.picture.wanted.contents
+        if name == "in vain":
+            shown()._shows_edits = lambda: False
         with Record() as record:
             bpy.data.objects["Ball"].location.x -= 0.1
             view.area.tag_redraw()
-            yield from until(lambda before=before: shown()._wanted is not before.wanted and finished())
+            yield from until(lambda before=before: shown().painter.picture.wanted.contents is not before and record.draws)
             yield 0.1
+        if name == "in vain":
+            del shown()._shows_edits
         first = next(picture for _, picture, _ in record.draws)
-        result[name] = [first.wanted.contents is not before.wanted.contents, shown()._skip]
+        result[name] = [first.wanted.contents is not before, shown()._skip]
     return result
 
 
