@@ -18,7 +18,7 @@ MEMORY = ("geometry_bytes", "accelerator_bytes", "texture_bytes", "film_bytes")
 def account(engine, scene, layer, session, schedule, denoised, uses):
     """Store and show the figures of a view layer, and return Messages about samples that are left out.
 
-    denoised: the denoised picture, or None; uses: the features of the scene.
+    denoised: the denoised picture, or None; uses: the features of the scene, as dicts.
     """
     numbers = render_report.account(session, schedule)
     numbers.update(denoise.statistics(denoised))

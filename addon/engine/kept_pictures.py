@@ -1,11 +1,11 @@
 """Data that the pictures of an animation, or of a scene with Persistent Data, have in common."""
 
-import bpy
 from bpy.app.handlers import persistent
 
 from ..export.kept import Kept
 from ..export.parts import Parts
 from ..host.by_scene import ByScene
+from ..host.registering import add_handlers, remove_handlers
 
 _kept = ByScene()
 
@@ -66,11 +66,9 @@ _HANDLERS = (("load_pre", _forget), ("render_complete", _forget_kept), ("render_
 
 
 def register():
-    for name, handler in _HANDLERS:
-        getattr(bpy.app.handlers, name).append(handler)
+    add_handlers(_HANDLERS)
 
 
 def unregister():
-    for name, handler in _HANDLERS:
-        getattr(bpy.app.handlers, name).remove(handler)
+    remove_handlers(_HANDLERS)
     _forget()

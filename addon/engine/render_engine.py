@@ -11,11 +11,9 @@ from ..bindings.abi import LancerError
 from ..bindings.session import Cancelled, Scene, Session
 from ..denoise import view_layer as denoise
 from ..export.scene import ExportOptions, export_scene
-from ..export.scratch import bytes_in_memory
 from ..export.settings import threads_of
 from ..host import main_thread, redraw, shared_scenes
 from ..host.priority import lowered
-from ..measure.scene_features import used_features
 from ..measure.schedule import Schedule, TimeShare
 from ..messages.messages import Messages
 from ..messages.severity import Severity
@@ -23,9 +21,9 @@ from ..viewport.viewport import Viewport
 from . import first_look, kept_pictures, many_machines, passes, preview, render_export, render_job
 from .account import account
 from .denoising import Denoising, wishes
+from .later import Later
 from .picture import Picture
 from .progress_text import progress_text
-from .quick_check import quick_check
 from .results import last_messages, last_missing, last_statistics
 
 # Seconds between polls.
@@ -40,12 +38,8 @@ _SHOW_EVERY = 0.3
 # Share of the time for reading the error.
 _ERROR_SHARE = 0.03
 _MAX_REPORTS = 30
-# Bytes of a snapshot that may stay in memory until the first picture is shown.
-_MOST_KEPT = 1 << 24
 # Blender frees more objects in more than some hundredths of a second.
 _MANY_OBJECTS = 2000
-# Bytes of indices, half a vertex, normals and a UV map.
-_BYTES_OF_TRIANGLE = 48
 # Seconds of a sample so short that the picture needs no coarse one before it.
 _SHORT = 0.2
 
@@ -61,11 +55,10 @@ class LancerRenderEngine(bpy.types.RenderEngine):
     # Blender calls __init__ twice and __del__ at odd times, so the class has neither: initial values are class attributes.
     _snapshot = None
     _picture = None
-    _uses = ()
     _gave_up = False
     _ahead = None  # the shared_scenes.Ahead of the export
     _following = None  # the kept_pictures.Following
-    _later = ()  # functions that need not run before the first picture
+    _later = None  # the Later of the snapshot
     _viewport = None
 
     def update_render_passes(self, scene=None, renderlayer=None):
@@ -95,12 +88,12 @@ class LancerRenderEngine(bpy.types.RenderEngine):
                 # The snapshot is complete, and Blender's evaluated data can be larger than the render: free it. Do not read the
                 # depsgraph from here on. In a window the first picture comes before that takes long.
                 if not bpy.app.background and len(self._snapshot.instances) > _MANY_OBJECTS:
-                    self._later.append(self.free_blender_memory)
+                    self._later.add(self.free_blender_memory)
                 else:
                     self.free_blender_memory()
                 self._guarded(scene, self._render, scene, layer, wanted, denoising, machines)
             self._snapshot = self._ahead = None
-            self._later = []
+            self._later = None
             if self._is_over():
                 # The remaining layers are not rendered.
                 self._picture = None
@@ -166,8 +159,9 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             logging.getLogger(__name__).exception("render failed")
             text = f"{type(error).__name__}: {error}"
         # The checks may tell why.
-        with contextlib.suppress(Exception):
-            self._do_later()
+        if self._later is not None:
+            with contextlib.suppress(Exception):
+                self._later.run()
         self._snapshot = None
         self._picture.messages.add(text, severity=Severity.FAILED)
         last_messages[scene] = self._picture.messages
@@ -201,27 +195,8 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             settings = denoise.prepared(settings, passes.sources(wanted))
         self._snapshot.set("settings", settings)
         self._tell(scene, messages)
-        self._postpone(scene)
-
-    def _postpone(self, scene):
-        """Look at the snapshot as a whole: now if it is large, and else while the library renders."""
-        # The upload takes the records out of the snapshot.
-        snapshot = self._snapshot.replaced()
-
-        def find_features():
-            self._uses = [dataclasses.asdict(feature) for feature in used_features(snapshot)]
-
-        def check():
-            self._tell(scene, quick_check(scene, snapshot, self._is_over))
-
-        self._uses, self._later = (), [find_features, check]
-        if kept_pictures.of(scene) is None and _size(snapshot) > _MOST_KEPT:
-            self._do_later()
-
-    def _do_later(self):
-        later, self._later = self._later, []
-        for work in later:
-            work()
+        is_kept = kept_pictures.of(scene) is not None
+        self._later = Later(scene, self._snapshot, is_kept, self._is_over, lambda messages: self._tell(scene, messages))
 
     def _opened(self, scene, layer, machines):
         """Return a context of the session that renders the snapshot: on this machine, or on others."""
@@ -284,7 +259,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
                         self._tell(scene, Messages([denoiser.failure]))
                 if denoised is not None:
                     passes.show_denoised(result.layers[0], denoised)
-                self._tell(scene, account(self, scene, layer, session, schedule, denoised, self._uses))
+                self._tell(scene, account(self, scene, layer, session, schedule, denoised, self._later.uses))
             finally:
                 # Keep the unfinished picture, after Esc too.
                 self.end_result(result)
@@ -301,8 +276,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             first = not showing.begun
             while True:
                 if has_time or showing.begun:
-                    with contextlib.suppress(Cancelled):
-                        self._do_later()
+                    self._later.run()
                 progress = schedule.wait(_STEP if showing.begun else _FIRST_STEP)
                 if not progress.finished and self._is_over():
                     schedule.cancel()
@@ -321,8 +295,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
                     break
             if self._is_over():
                 return
-        with contextlib.suppress(Cancelled):
-            self._do_later()
+        self._later.run()
 
     def _tell(self, scene, messages):
         """Report new messages as warnings, except hints, and keep all messages for the panel."""
@@ -334,12 +307,6 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             self.report({"WARNING"}, f"Lancer: {message.line}")
         if len(new) > room:
             self.report({"WARNING"}, f"Lancer: {len(new) - room} more messages are in the render properties")
-
-
-def _size(snapshot):
-    """Return about the bytes of a snapshot's triangles, instances and texels: there may be 100 000 meshes."""
-    triangles = sum(len(mesh.triangles) for mesh in snapshot.meshes)
-    return triangles * _BYTES_OF_TRIANGLE + snapshot.instances.matrices.nbytes + sum(map(bytes_in_memory, snapshot.images))
 
 
 def register():

@@ -8,10 +8,10 @@ import contextlib
 import threading
 import time
 
-import bpy
 from bpy.app.handlers import persistent
 
 from ..host import main_thread
+from ..host.registering import add_handlers, remove_handlers
 
 _PATIENCE = 0.05  # seconds between checks
 # Longest seconds of Blender's own work after the engine's; without the limit a removed handler would block for ever.
@@ -78,12 +78,10 @@ _HANDLERS = (("render_init", _begun), ("render_complete", _ended), ("render_canc
 
 def register():
     _enough.clear()
-    for name, handler in _HANDLERS:
-        getattr(bpy.app.handlers, name).append(handler)
+    add_handlers(_HANDLERS)
 
 
 def unregister():
     """End a running render; call this before other modules unregister."""
     _end()
-    for name, handler in _HANDLERS:
-        getattr(bpy.app.handlers, name).remove(handler)
+    remove_handlers(_HANDLERS)

@@ -16,6 +16,8 @@ from concurrent import futures
 import bpy
 from bpy.app.handlers import persistent
 
+from .registering import add_handlers, remove_handlers
+
 ENGINE = "LANCER"
 
 _QUICK, _SLOW = 0.01, 0.1  # seconds between calls of the timer: during a render, and otherwise
@@ -128,8 +130,7 @@ _HANDLERS = (("load_post", _loaded), ("undo_post", _look), ("redo_post", _look))
 def register():
     # Timers never run in background mode.
     if not bpy.app.background:
-        for name, handler in _HANDLERS:
-            getattr(bpy.app.handlers, name).append(handler)
+        add_handlers(_HANDLERS)
         _loaded()
 
 
@@ -137,8 +138,7 @@ def unregister():
     global _serving
     if bpy.app.background:
         return
-    for name, handler in _HANDLERS:
-        getattr(bpy.app.handlers, name).remove(handler)
+    remove_handlers(_HANDLERS)
     bpy.msgbus.clear_by_owner(_owner)
     _serving = False
     if bpy.app.timers.is_registered(_tick):

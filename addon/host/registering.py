@@ -1,6 +1,8 @@
-"""Registration of all items or none."""
+"""Registration of all items or none, and of handlers."""
 
 import contextlib
+
+import bpy
 
 
 def add_all(things, add, remove):
@@ -10,3 +12,14 @@ def add_all(things, add, remove):
             add(thing)
             added.callback(remove, thing)
         added.pop_all()
+
+
+def add_handlers(handlers):
+    """Add Blender's handlers, given as pairs of a list's name and a function."""
+    for name, handler in handlers:
+        getattr(bpy.app.handlers, name).append(handler)
+
+
+def remove_handlers(handlers):
+    for name, handler in handlers:
+        getattr(bpy.app.handlers, name).remove(handler)

@@ -7,7 +7,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, PointerProperty
 
 from ..host.registering import add_all
-from .scene_settings import LancerSceneSettings, add_handlers, add_watched, remove_handlers, remove_watched
+from .scene_settings import LancerSceneSettings, add_watched, register_handlers, remove_watched, unregister_handlers
 
 
 def _color(name, description, default):
@@ -188,7 +188,7 @@ def _add(item):
     bpy.utils.register_class(group)
     if group is LancerSceneSettings:
         add_watched(group)
-        add_handlers()
+        register_handlers()
     owner.lancer = PointerProperty(type=group, name="Lancer")
 
 
@@ -196,6 +196,6 @@ def _remove(item):
     group, owner = item
     del owner.lancer
     if group is LancerSceneSettings:
-        remove_handlers()
+        unregister_handlers()
         remove_watched(group)
     bpy.utils.unregister_class(group)

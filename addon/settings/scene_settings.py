@@ -10,6 +10,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, St
 from ..bindings.structs import SETTINGS
 from ..denoise.view_layer import missing
 from ..host.main_thread import ENGINE
+from ..host.registering import add_handlers, remove_handlers
 
 _GIVEN = {name: given for name, (_, given) in SETTINGS.items()}
 
@@ -236,14 +237,12 @@ def _saving(*_):
 _HANDLERS = (("load_post", _loaded), ("save_pre", _saving))
 
 
-def add_handlers():
-    for name, handler in _HANDLERS:
-        getattr(bpy.app.handlers, name).append(handler)
+def register_handlers():
+    add_handlers(_HANDLERS)
 
 
-def remove_handlers():
-    for name, handler in _HANDLERS:
-        getattr(bpy.app.handlers, name).remove(handler)
+def unregister_handlers():
+    remove_handlers(_HANDLERS)
 
 
 _WATCHED = ("integrator", "use_denoising", "use_pass_error", "use_pass_albedo", "quality", "target_error", "samples")
