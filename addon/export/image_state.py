@@ -1,4 +1,4 @@
-"""The state of an image from which its texels follow: files, by time and size, and settings."""
+"""The state of an image from which its texels follow: files by time and size, packed ones by contents, and settings."""
 
 import hashlib
 import os
@@ -8,11 +8,8 @@ import bpy
 from .tiles import path_of_tile
 
 
-def image_state(image, seen, by_contents):
-    """Return the files and the settings of an image; None if its pixels can change without changing these.
-
-    by_contents: whether packed files are known by their contents, which Blender may have replaced, or by their sizes.
-    """
+def image_state(image, seen):
+    """Return the files and the settings of an image; None if its pixels can change without changing these."""
     if image.is_dirty or image.source == "VIEWER":
         return None
     settings = (image.source, image.alpha_mode, image.colorspace_settings.name, image.filepath, seen)
@@ -22,8 +19,8 @@ def image_state(image, seen, by_contents):
         return (*settings, working, *made)
     packed = tuple(item.packed_file for item in image.packed_files) or ((image.packed_file,) if image.packed_file else ())
     if packed and not seen.path:
-        told = (hashlib.sha256(item.data).digest() if by_contents else item.size for item in packed if item is not None)
-        return (*settings, working, *told)
+        # Blender does not tell that a script has packed other contents.
+        return (*settings, working, *(hashlib.sha256(item.data).digest() for item in packed if item is not None))
     return (*settings, working, *_files_of(image, seen.path))
 
 

@@ -123,7 +123,7 @@ class Images:
         return found | set(keys)
 
     def _state(self, image, seen):
-        state = image_state(image, seen, by_contents=False)
+        state = image_state(image, seen)
         return None if state is None else (state, has_cached_file(self.texture_cache, image, seen))
 
     def forget(self, changed, used):

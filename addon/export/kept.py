@@ -88,7 +88,7 @@ class Kept:
                 return read_all(image, seen, lambda *given, **named: told.append((given, named))), told
 
             key = image.name_full, has_mipmaps, image.has_data
-            found, told = self._get("images", key, image_state(image, seen, by_contents=True), make)
+            found, told = self._get("images", key, image_state(image, seen), make)
             for given, named in told:
                 tell(*given, **named)
             return found

@@ -1,6 +1,8 @@
 """Pictures with Persistent Data, each after one edit: what is read, and whether the snapshot equals that of a full export."""
 
 import dataclasses
+import os
+import tempfile
 
 import bpy
 from parts_cases import build, edit_material, edit_mesh, plain, set_to
@@ -54,6 +56,23 @@ def _drive():
         bpy.data.objects[name].driver_add("hide_render").driver.expression = expression
 
 
+def _pack(value):
+    """Pack an image of another colour, whose file always has the same size."""
+
+    def edit():
+        folder = tempfile.mkdtemp()
+        made = bpy.data.images.new("made", 8, 8)
+        made.pixels.foreach_set([value, 0.5, 0.25, 1.0] * 64)
+        made.filepath_raw, made.file_format = os.path.join(folder, "made.bmp"), "BMP"
+        made.save()
+        bpy.data.images.remove(made)
+        with open(os.path.join(folder, "made.bmp"), "rb") as file:
+            data = file.read()
+        next(image for image in bpy.data.images if image.name.startswith("first")).pack(data=data, data_len=len(data))
+
+    return edit
+
+
 def _both_at_once():
     _later()
     bpy.data.objects["Pictured"].visible_camera = False
@@ -76,6 +95,8 @@ _EDITS_OF_PICTURES = {
     "parent": _parent,
     "moved parent": set_to("objects['Lone'].location", (6, 2, 0)),
     "link of a slot": _link,
+    "packed picture": _pack(0.25),
+    "packed anew": _pack(0.75),
     "another world": lambda: setattr(bpy.context.scene, "world", bpy.data.worlds.new("Another")),
     "no surfaces": set_to("bpy.context.view_layer.use_solid", False),
     "collection": _collect,
