@@ -33,15 +33,15 @@ class Places(NamedTuple):
     placements: np.ndarray  # of each row, -1 for none
     exact: tuple  # (4, 4) by those numbers
     one_by_one: bool
-    signs: array  # of all entries, see sign_of
+    marks: array  # of all entries, see mark_of
     space: object  # the ExportOptions' own
 
     def shows_the_same(self, depsgraph):
         """Whether the entries are those of the same objects, in the same order, hidden or not as before."""
-        signs, count = self.signs, len(self.signs)
+        marks, count = self.marks, len(self.marks)
         number = -1
         for number, entry in enumerate(depsgraph.object_instances):
-            if number >= count or sign_of(entry, entry.object, self.space) != signs[number]:
+            if number >= count or mark_of(entry, entry.object, self.space) != marks[number]:
                 return False
         return number + 1 == count
 
@@ -65,7 +65,7 @@ class Places(NamedTuple):
         return columns.reshape(-1, 4, 4)
 
 
-def sign_of(entry, thing, space):
+def mark_of(entry, thing, space):
     """Return a number that differs for other objects and for hidden ones; space: a SpaceView3D that hides some, or None."""
     hidden = space is not None and not thing.visible_in_viewport_get(space)
     # Addresses are multiples of 8.
@@ -100,7 +100,7 @@ class Instances:
         self._entries = array("I")
         self._entry_count = 0
         self._first_is_text = False
-        self._signs = array("Q")
+        self._marks = array("Q")
         self.places = None
 
     @property
@@ -110,15 +110,15 @@ class Instances:
     def collect(self, poll):
         shows_surfaces = self.depsgraph.view_layer.use_solid
         rows, row_of, entries = self._rows, self._row_of, self._entries
-        signs, space = self._signs, self._space
+        marks, space = self._marks, self._space
         number = -1
         for number, entry in enumerate(self.depsgraph.object_instances):
             if number % _POLL_EVERY == 0:
                 poll()
             thing = entry.object
-            sign = sign_of(entry, thing, space)
-            signs.append(sign)
-            if sign & 1:
+            mark = mark_of(entry, thing, space)
+            marks.append(mark)
+            if mark & 1:
                 continue
             if thing.type != "MESH":
                 if number == 0:
@@ -132,7 +132,7 @@ class Instances:
                 continue
             # Evaluated data lives as long as the depsgraph, but the objects of entries are reused: store addresses only.
             if entry.is_instance:
-                key = sign & ~7, self._data_key(entry, thing), self._narrowed_by(entry.parent)
+                key = mark & ~7, self._data_key(entry, thing), self._narrowed_by(entry.parent)
                 row = rows.get(key)
                 if row is None:
                     row = rows[key] = self._new_row(thing, entry.instance_object, *key, poll)
@@ -140,7 +140,7 @@ class Instances:
                 # An object that is no instance appears once: no cache is needed.
                 if number % _POLL_EVERY_OBJECT == 0:
                     poll()
-                row = self._new_row(thing, thing, sign & ~7, self._data_key(entry, thing), None, poll)
+                row = self._new_row(thing, thing, mark & ~7, self._data_key(entry, thing), None, poll)
             if row >= 0:
                 row_of.append(row)
                 entries.append(number)
@@ -165,7 +165,7 @@ class Instances:
         leaks = _LEAKS_FIRST and self._first_is_text
         entries = np.frombuffer(self._entries, np.uint32)
         self.places = Places(
-            entries, self._entry_count, placements, tuple(self._objects.placements), leaks, self._signs, self._space
+            entries, self._entry_count, placements, tuple(self._objects.placements), leaks, self._marks, self._space
         )
         matrices = self.places.matrices(self.depsgraph)
         poll()

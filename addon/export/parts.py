@@ -21,6 +21,7 @@ from .animated import has_traits, only_moves, traits
 from .images import Images
 from .shader_cache import ShaderCache
 
+# Whether Blender reports other materials of an object as its move.
 _MOVES_MEAN_MORE = bpy.app.version < (4, 2)
 
 
@@ -48,7 +49,7 @@ class Parts:
         self._meshes, self._used_meshes = {}, {}
         self._lights = []
         self.even = {}  # of with_even_normals
-        self._traits = {}  # of objects that their animation moves
+        self._traits = {}  # of objects that have some, see has_traits
         self._frame = None
         self._last = None  # the _Export before
 
@@ -172,7 +173,6 @@ def _updates(depsgraph):
             moved.append(block)
         else:
             others.append(_Update(block, is_object, moves, reshapes, shades))
-    # Old versions report other materials of an object as its move.
     if _MOVES_MEAN_MORE and any(update.is_scene for update in others):
         others += [_Update(block, True, True, False, False) for block in moved]
         moved = []
