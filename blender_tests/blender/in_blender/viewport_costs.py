@@ -64,15 +64,16 @@ def shared(folder):
     held.append(memory_now.held()["given"])
     with View().override():
         bpy.ops.screen.area_split(direction="VERTICAL", factor=0.5)
+    # Blender gives the new view Solid shading, whose first drawing would fill buffers for the GPU.
+    for area in bpy.context.window_manager.windows[0].screen.areas:
+        if area.type == "VIEW_3D":
+            area.spaces.active.shading.type = "RENDERED"
     yield 0.3
 
     def all_finished():
         views = list(viewport._open)
         return len(views) == 2 and all(view.painter.picture is not None and not view.painter.is_busy for view in views)
 
-    for area in bpy.context.window_manager.windows[0].screen.areas:
-        if area.type == "VIEW_3D":
-            area.spaces.active.shading.type = "RENDERED"
     yield from until(all_finished)
     held.append(memory_now.held()["given"])
     used = [{id(part) for part in view.painter._scene._parts} for view in viewport._open]
