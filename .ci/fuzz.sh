@@ -9,7 +9,8 @@ echo "== calls and files, $seconds s each"
 # Python itself is built without sanitizers: preload their library before all others, with libstdc++, whose exceptions it
 # intercepts at start-up. Leaks of Python itself are ignored.
 files=0
-first="$(g++ -print-file-name=libasan.so) $(g++ -print-file-name=libstdc++.so)"
+runtime="$(dirname "$(clang++-19 --rtlib=compiler-rt -print-libgcc-file-name)")/libclang_rt.asan-$(uname -m).so"
+first="$runtime $(g++ -print-file-name=libstdc++.so)"
 LD_PRELOAD="$first" ASAN_OPTIONS=detect_leaks=0 LANCER_LIBRARY="$PWD/build/sanitize/liblancer.so" \
   "$python" blender_tests/helpers/broken_files.py build/fuzz-seed.txt build/fuzz-found "$(date +%s)" 1 "$seconds" \
   >build/fuzz-files.log 2>&1 &

@@ -117,15 +117,20 @@ uint64_t random_scene(uint32_t seed) {
     materials.push_back(random_material(stand, dice));
   for (int i = 0; i < 10; ++i) {
     const uint32_t kinds[] = {LANCER_MESH, LANCER_SPHERE, LANCER_CYLINDER, LANCER_CONE};
-    lancer_instance &instance = stand.place(kinds[dice() % 4], materials[dice() % 4], dice.place({-2, -2, 0.25}, {4, 4, 2}));
+    // In sequence: compilers evaluate the arguments of a call in any order.
+    const std::array<double, 3> at = dice.place({-2, -2, 0.25}, {4, 4, 2});
+    const uint32_t material = materials[dice() % 4];
+    lancer_instance &instance = stand.place(kinds[dice() % 4], material, at);
     tilt(instance.matrix);
     instance.hidden_from = dice() % 5 ? 0 : dice() & 63;
   }
   for (uint32_t i = 0, count = dice() % 5; i < count; ++i) {
     const std::array<double, 3> at = dice.place({-3, -3, 2}, {6, 6, 3});
-    stand.add(lamp(dice() % 4, at[0], at[1], at[2], 1.0f + 16.0f * dice.share()));
+    const float strength = 1.0f + 16.0f * dice.share();
+    stand.add(lamp(dice() % 4, at[0], at[1], at[2], strength));
   }
-  stand.sky(dice.share(), dice.share(), dice.share());
+  const float blue = dice.share(), green = dice.share();
+  stand.sky(dice.share(), green, blue);
   stand.settings.samples = 2;
   stand.settings.seed = seed;
   stand.settings.max_bounces = dice() % 6;

@@ -16,6 +16,7 @@ void edit(Random &random, Listed &listed) {
   case 2:
     if (listed.instances.size() > 1)
       listed.instances.erase(listed.instances.begin() + ptrdiff_t(random() % listed.instances.size()));
+    listed.infos.resize(std::min(listed.infos.size(), 5 * listed.instances.size()));
     return;
   case 3:
   case 4:

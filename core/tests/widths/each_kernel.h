@@ -18,7 +18,7 @@ namespace lancer::testing {
 
 // Returns the first of the copies, which stand in the order of their instruction sets.
 template <class Kernel> std::vector<const Kernel *> runnable(std::initializer_list<const Kernel *> copies) {
-  const size_t count = instruction_set() >= InstructionSet::Avx512 ? 3 : instruction_set() >= InstructionSet::Avx2 ? 2 : 1;
+  const int count = instruction_set() >= InstructionSet::Avx512 ? 3 : instruction_set() >= InstructionSet::Avx2 ? 2 : 1;
   return {copies.begin(), copies.begin() + count};
 }
 
