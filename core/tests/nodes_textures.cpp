@@ -180,6 +180,15 @@ TEST(NodesGradient, ClosedForms) {
     }
 }
 
+TEST(NodesGabor, IsFiniteForAllFrequencies) {
+  for (const bool in_space : {false, true})
+    for (const float frequency : {2.0f, 1e20f, 3e38f, kInfinite, std::nanf("")})
+      for (const V &p : places(50)) {
+        const V got = gabor_texture<float>(in_space, p, {1.0f, frequency, 0.5f}, {0.3f, 0.8f, 0.5f});
+        EXPECT_TRUE(std::isfinite(got.x) && std::isfinite(got.y) && std::isfinite(got.z)) << in_space << " " << frequency;
+      }
+}
+
 // x^2 at 0, 1/2, 1 in the first channel, -x in the second, 7 in the third.
 constexpr float kTable[] = {0.0f, -0.0f, 7.0f, 0.25f, -0.5f, 7.0f, 1.0f, -1.0f, 7.0f};
 

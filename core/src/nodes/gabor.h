@@ -22,9 +22,11 @@ LANCER_LANE void add_impulse(const F (&way)[N], const F &cycles, const MaskOf<F>
     square = square + way[i] * way[i];
   square = select(is_near, square, F(1.0f));
   const F window = half + half * sin_cos_turn(F(half * square)).cos;
-  const F amplitude = select(is_near, sign * exp(F(-pi) * square) * window, F(0.0f));
   const F fraction = cycles - floor(cycles);
-  const SinCos<F> wave = sin_cos_turn(select(is_near, fraction, F(0.0f)));
+  // Waves too fast for their phase to be a number cancel each other.
+  const MaskOf<F> counts = is_near & (fraction <= F(1.0f));
+  const F amplitude = select(counts, sign * exp(F(-pi) * square) * window, F(0.0f));
+  const SinCos<F> wave = sin_cos_turn(select(counts, fraction, F(0.0f)));
   sum.cosine = sum.cosine + amplitude * wave.cos;
   sum.sine = sum.sine + amplitude * wave.sin;
 }
