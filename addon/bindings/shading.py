@@ -44,8 +44,11 @@ class Parameters(Record):
             setattr(cls, name, default)
 
     def __post_init__(self):
+        values = vars(self)
         for name in self.PARAMETERS:
-            self.set(name, _parameter(getattr(self, name)))
+            # Most are floats: a scene may have a hundred thousand.
+            if type(values[name]) is not float:
+                values[name] = _parameter(values[name])
 
 
 @register

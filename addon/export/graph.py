@@ -205,6 +205,8 @@ class NodeGraph(NodeBuilder):
         return 0.0 if isinstance(value, float) else (0.0, 0.0, 0.0)
 
     def _read(self, site, socket):
+        if not socket.is_linked:
+            return _constant(socket)
         origin = self.origin(site, socket)
         value = None if origin.site is None else self._output(origin.site, origin.output)
         types = origin.types
@@ -321,6 +323,8 @@ def _key(origin):
 def _constant(socket):
     """Return the constant of a socket; 0 if it has none."""
     value = getattr(socket, "default_value", 0.0)
+    if type(value) is float:
+        return value
     if hasattr(value, "__len__") and not isinstance(value, str):
         return (*map(float, value[:3]), 0.0, 0.0, 0.0)[:3]
     return float(value) if isinstance(value, (int, float)) else 0.0
