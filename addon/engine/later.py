@@ -3,8 +3,8 @@
 import contextlib
 import dataclasses
 
+from ..bindings.blocks import Blocks, even_sample
 from ..bindings.scene import Cancelled
-from ..export.scratch import bytes_in_memory
 from ..measure.scene_features import used_features
 from .quick_check import quick_check
 
@@ -27,7 +27,7 @@ class Later:
         """
         self.uses = []
         # The upload takes the records out of the snapshot.
-        whole = snapshot.replaced()
+        whole = snapshot.replaced(images=tuple(map(_sampled, snapshot.images)))
         self._work = [lambda: self._look(scene, whole, is_over, tell)]
         if not is_kept and _size(snapshot) > _MOST_KEPT:
             self._run()
@@ -50,7 +50,14 @@ class Later:
         tell(quick_check(scene, snapshot, is_over))
 
 
+def _sampled(image):
+    """Return an image that has the sample of its texels alone, which is all that checks read."""
+    texels = image.texels
+    if isinstance(texels, Blocks):
+        return image
+    return image.replaced(texels=Blocks(texels.shape, texels.dtype, None, 0, 0, even_sample(texels).copy()))
+
+
 def _size(snapshot):
-    """Return about the bytes of a snapshot's triangles, instances and texels: there may be 100 000 meshes."""
-    triangles = sum(len(mesh.triangles) for mesh in snapshot.meshes)
-    return triangles * _BYTES_OF_TRIANGLE + snapshot.instances.matrices.nbytes + sum(map(bytes_in_memory, snapshot.images))
+    """Return about the bytes of a snapshot's triangles and instances: there may be 100 000 meshes."""
+    return sum(len(mesh.triangles) for mesh in snapshot.meshes) * _BYTES_OF_TRIANGLE + snapshot.instances.matrices.nbytes

@@ -14,6 +14,7 @@ EXPECTED = {
     "far from the origin": ("precision", "WRONG", "Ball", "no larger than a few steps"),
     "tiny in its place": ("precision", "WRONG", "Ball", "hardly more than the step"),
     "light that grows": ("closures", "WRONG", "Ball", "1.6 times the light"),
+    "picture beyond white": ("closures", "WRONG", "Ball", "goes up to 2"),
     "invisible glass": ("closures", "WASTE", "Ball", "invisible"),
 }
 

@@ -24,6 +24,19 @@ def _add(shader, other):
     return material
 
 
+def _painted(value):
+    """Return a material whose colour is a picture of one value."""
+    picture = bpy.data.images.new("Paint", 8, 8, float_buffer=True)
+    picture.pixels.foreach_set([value, value, value, 1.0] * 64)
+    material = stage.shader(name="Painted")
+    tree = material.node_tree
+    node = tree.nodes.new("ShaderNodeTexImage")
+    node.image = picture
+    diffuse = next(other for other in tree.nodes if other.type == "BSDF_DIFFUSE")
+    tree.links.new(node.outputs["Color"], diffuse.inputs["Color"])
+    return material
+
+
 def _smooth(item):
     item.data.polygons.foreach_set("use_smooth", [True] * len(item.data.polygons))
     return item
@@ -79,6 +92,10 @@ _FLAWS = {
     "light that grows": (
         lambda: stage.ball(material=_add("ShaderNodeBsdfDiffuse", "ShaderNodeBsdfGlossy"), location=(0, 0, 1.5)),
         lambda: stage.ball(material=_add("ShaderNodeBsdfDiffuse", "ShaderNodeEmission"), location=(0, 0, 1.5)),
+    ),
+    "picture beyond white": (
+        lambda: stage.ball(material=_painted(2.0), location=(0, 0, 1.5)),
+        lambda: stage.ball(material=_painted(0.5), location=(0, 0, 1.5)),
     ),
     "invisible glass": (
         lambda: stage.ball(material=_glass(IOR=1.0), location=(0, 0, 1.5)),
