@@ -6,10 +6,12 @@ import numpy as np
 from ..bindings import snapshot
 from ..bindings.enums import AlphaMode, Transfer
 from .colorspace import IDENTITY, conversion, convert, floats
+from .decoded import Decoded
 from .gaps import mended
 
 _VALUES_AT_ONCE = 1 << 18  # converted in one pass, small enough for the processor's cache
 _WHITE = 65535.0
+_LARGEST_BYTE = 255.0
 _ASSOCIATED_FORMATS = ("OPEN_EXR", "OPEN_EXR_MULTILAYER", "HDR")  # formats that store colour multiplied by alpha
 
 
@@ -22,7 +24,7 @@ def read_texels(image, source, tell, space, tile=0, path="", columns=()):
     is_stored = bool(path)
     if min(source.size) < 1 or source.channels < 1:
         return []
-    values = floats(source)
+    values = _values(source)
     if columns:
         values = np.ascontiguousarray(values[:, :, columns])
     if source.is_float and not np.isfinite(values).all():
@@ -31,9 +33,9 @@ def read_texels(image, source, tell, space, tile=0, path="", columns=()):
     alpha = _alpha_mode(image, source, is_data, is_stored)
     if values.shape[2] == 2:
         values = values[:, :, [0, 0, 0, 1]]
-    if values.shape[2] == 4 and (alpha == AlphaMode.NONE or bool((values[:, :, 3] == 1.0).all())):
+    if values.shape[2] == 4 and (alpha == AlphaMode.NONE or _is_opaque(values[:, :, 3])):
         # Keep the alpha mode: it decides the colour outside the image with extension Clip.
-        values = values[:, :, :3]
+        values = _colors(values)
     transfer, matrix = Transfer.LINEAR, IDENTITY
     # Without the name of a colour space Cycles uses the values unchanged.
     if name and not is_data and (is_stored or not source.is_float):
@@ -43,8 +45,30 @@ def read_texels(image, source, tell, space, tile=0, path="", columns=()):
             values, alpha = _converted(values, name, alpha)
             return [_picture(image, values, transfer, alpha, tile, matrix)]
         transfer, matrix = found
-    texels = _floating(values) if source.is_float else _quantised(values, 255.0, np.uint8)
+    texels = _floating(values) if source.is_float else np.ascontiguousarray(values)
     return [_picture(image, texels, transfer, alpha, tile, matrix)]
+
+
+def _values(source):
+    """Return the pixels of a Blender image or a Decoded: floating point as float32, others as bytes."""
+    if isinstance(source, Decoded):
+        return source.texels
+    values = floats(source)
+    return values if source.is_float else _quantised(values, _LARGEST_BYTE, np.uint8)
+
+
+def _is_opaque(alpha):
+    return alpha.min() == _LARGEST_BYTE if alpha.dtype == np.uint8 else bool((alpha == 1.0).all())
+
+
+def _colors(values):
+    """Return a copy without alpha. Copied by channels, parts that fit the cache take half the time of texels one by one."""
+    colors = np.empty((*values.shape[:2], 3), values.dtype)
+    rows = max(1, _VALUES_AT_ONCE // values[0].size)
+    for first in range(0, len(values), rows):
+        for channel in range(3):
+            colors[first : first + rows, :, channel] = values[first : first + rows, :, channel]
+    return colors
 
 
 def mid_grey(image, tile):
@@ -88,6 +112,9 @@ def _converted(values, name, alpha):
 
     Colour is divided by alpha before the conversion and multiplied after it, so that interpolation sees associated alpha.
     """
+    if values.dtype == np.uint8:
+        # Blender multiplies bytes by this number.
+        values = values * np.float32(1.0 / _LARGEST_BYTE)
     full = np.ones((*values.shape[:2], 4), np.float32)
     full[:, :, : values.shape[2]] = values
     if values.shape[2] == 1:
