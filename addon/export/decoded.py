@@ -1,5 +1,6 @@
 """Files of 8-bit images as bytes, which scripts can read since Blender 5.2: as floats they need four times the memory."""
 
+import contextlib
 from typing import NamedTuple
 
 import imbuf
@@ -27,30 +28,35 @@ class Decoded(NamedTuple):
 
 
 def decoded_file(path):
-    """Return the Decoded of a file; None if this Blender or the file gives no bytes."""
+    """Yield the Decoded of a file, whose texels are freed on exit; None if this Blender or the file gives no bytes."""
     with open(path, "rb") as file:
         return _decoded(file.read(_START), lambda: imbuf.load(path))
 
 
 def decoded_bytes(data):
-    """Return the Decoded of a file's content; None if this Blender or the file gives no bytes."""
+    """Yield the Decoded of a file's content, as decoded_file does."""
     return _decoded(data[:_START], lambda: imbuf.load_from_buffer(data))
 
 
+@contextlib.contextmanager
 def _decoded(start, load):
-    if not _READS_BYTES or not _has_bytes(start):
-        return None
+    buffer = _loaded(load) if _READS_BYTES and _has_bytes(start) else None
     try:
-        buffer = load()
+        if buffer is None or buffer.buffer_type != "BYTE":
+            yield None
+            return
+        with buffer.with_buffer() as pixels:
+            yield Decoded(np.asarray(pixels))
+    finally:
+        if buffer is not None:
+            buffer.free()
+
+
+def _loaded(load):
+    try:
+        return load()
     except (OSError, ValueError):
         return None
-    try:
-        if buffer.buffer_type != "BYTE":
-            return None
-        with buffer.with_buffer() as pixels:
-            return Decoded(np.array(pixels))
-    finally:
-        buffer.free()
 
 
 def _has_bytes(start):

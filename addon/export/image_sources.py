@@ -58,9 +58,9 @@ def read_memory(image, _, tell):
     """Read the pixels that Blender has, or decodes from a packed file."""
     # Blender divides the bytes of some images by alpha.
     if not image.has_data and image.source == "FILE" and image.packed_file is not None and image.alpha_mode != "PREMUL":
-        found = decoded_bytes(image.packed_file.data)
-        if found is not None:
-            return read_texels(image, found, tell, _space(image))
+        with decoded_bytes(image.packed_file.data) as found:
+            if found is not None:
+                return read_texels(image, found, tell, _space(image))
     # Free the pixels again if Blender had not loaded them before.
     had_data = image.has_data
     # Blender tells the type only after it has read the file, and scripts cannot read the pixels of layers.
@@ -84,8 +84,7 @@ def _read_file(image, path, tell, tile=0):
         return []
     try:
         if not has_layers(path):
-            found = decoded_file(path)
-            with stored(path) if found is None else contextlib.nullcontext(found) as source:
+            with decoded_file(path) as found, contextlib.nullcontext(found) if found else stored(path) as source:
                 return read_texels(image, source, tell, _space(image), tile, path)
         with open(path, "rb") as file:
             plain = shown_by_cycles(file.read())

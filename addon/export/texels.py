@@ -45,7 +45,8 @@ def read_texels(image, source, tell, space, tile=0, path="", columns=()):
             values, alpha = _converted(values, name, alpha)
             return [_picture(image, values, transfer, alpha, tile, matrix)]
         transfer, matrix = found
-    texels = _floating(values) if source.is_float else np.ascontiguousarray(values)
+    # The texels of a Decoded belong to Blender.
+    texels = _floating(values) if source.is_float else values if values.flags.owndata else values.copy()
     return [_picture(image, texels, transfer, alpha, tile, matrix)]
 
 
