@@ -100,7 +100,9 @@ def _record(cls, fields):
     for name, value in fields.items():
         if name in types and not _fits(value, types[name]):
             raise TypeError(f"{cls.__name__}.{name} is {_short(value)}")
-    return cls(**fields)
+    # numpy takes no truth value as a size.
+    numbers = {name: int(value) for name, value in fields.items() if isinstance(value, bool) and types.get(name) is not bool}
+    return cls(**fields | numbers)
 
 
 @functools.cache

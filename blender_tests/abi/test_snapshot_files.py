@@ -131,6 +131,17 @@ def test_a_file_that_is_not_there_is_an_error_of_the_system(tmp_path):
         SceneSnapshot.load(str(tmp_path / "none.npz"))
 
 
+def test_truth_in_place_of_a_number_is_one(parts):
+    tree, _, write = parts
+    for name in ("height", "region_height"):
+        put(tree, ("camera", name), True)
+    put(tree, ("camera", "y"), False)
+    snapshot = SceneSnapshot.load(write())
+    assert [type(getattr(snapshot.camera, name)) for name in ("height", "region_height", "y")] == [int] * 3
+    with Session.upload(snapshot) as session:
+        assert session.render_all(1) and session.read().shape == (1, snapshot.camera.region_width, 4)
+
+
 def test_half_a_character_in_a_name_is_no_obstacle(parts):
     """Lone surrogates are valid in Python and JSON but not in UTF-8."""
     tree, _, write = parts
