@@ -96,10 +96,10 @@ device-check: packages-fuzz ## compile the formulas and the records of kernels f
 
 sanitize: packages-fuzz ## run the C++ tests under AddressSanitizer and UndefinedBehaviorSanitizer
 	@mkdir -p build
-	@$(call logged,build/configure-sanitize.log,$(cmake) -B build/sanitize -DLANCER_SANITIZE=ON $(clang))
+	@$(call logged,build/configure-sanitize.log,$(cmake) -B build/sanitized -DLANCER_SANITIZE=ON $(clang))
 	@echo "== core under sanitizers"
-	@cmake --build build/sanitize $(compile)
-	@$(call logged,build/ctest-sanitize.log,ctest --test-dir build/sanitize -j $(JOBS) --output-on-failure)
+	@cmake --build build/sanitized $(compile)
+	@$(call logged,build/ctest-sanitize.log,ctest --test-dir build/sanitized -j $(JOBS) --output-on-failure)
 	@grep -E '^[0-9]+% tests passed|^Total Test time' build/ctest-sanitize.log
 
 # Inputs that found a fault go into core/fuzz/corpus once the fault is fixed; ctest replays them.
@@ -108,8 +108,8 @@ fuzz: packages-fuzz python-test ## fuzz the C interface and the loading of snaps
 	@$(call logged,build/configure-fuzz.log,$(cmake) -B build/fuzz -DLANCER_FUZZ=ON $(clang))
 	@echo "== core under sanitizers, to be fuzzed"
 	@cmake --build build/fuzz $(compile)
-	@$(call logged,build/configure-sanitize.log,$(cmake) -B build/sanitize -DLANCER_SANITIZE=ON $(clang))
-	@cmake --build build/sanitize --target lancer $(compile)
+	@$(call logged,build/configure-sanitize.log,$(cmake) -B build/sanitized -DLANCER_SANITIZE=ON $(clang))
+	@cmake --build build/sanitized --target lancer $(compile)
 	@.ci/fuzz.sh $(MINUTES) $(python)
 
 mutants: packages-test python-test build ## make one line of a copy wrong at a time, and run the tests that must fail: make mutants [ONLY='export*'] [QUICK=1]

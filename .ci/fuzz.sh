@@ -11,7 +11,7 @@ echo "== calls and files, $seconds s each"
 files=0
 runtime="$(dirname "$(clang++-19 --rtlib=compiler-rt -print-libgcc-file-name)")/libclang_rt.asan-$(uname -m).so"
 first="$runtime $(g++ -print-file-name=libstdc++.so)"
-LD_PRELOAD="$first" ASAN_OPTIONS=detect_leaks=0 LANCER_LIBRARY="$PWD/build/sanitize/liblancer.so" \
+LD_PRELOAD="$first" ASAN_OPTIONS=detect_leaks=0 LANCER_LIBRARY="$PWD/build/sanitized/liblancer.so" \
   "$python" blender_tests/helpers/broken_files.py build/fuzz-seed.txt build/fuzz-found "$(date +%s)" 1 "$seconds" \
   >build/fuzz-files.log 2>&1 &
 worker=$!

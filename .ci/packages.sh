@@ -63,7 +63,7 @@ want_test() {
   want slurm-client command_is_there sbatch
 }
 
-# A compiler with libFuzzer.
+# A compiler with sanitizers and libFuzzer.
 want_fuzz() {
   want_test
   want clang-19 command_is_there clang++-19
