@@ -5,11 +5,15 @@ import os
 
 import bpy
 
+from ..host import main_thread
 from .tiles import path_of_tile
 
 
-def image_state(image, seen):
-    """Return the files and the settings of an image; None if its pixels can change without changing these."""
+def image_state(image, seen, digests=None):
+    """Return the files and the settings of an image; None if its pixels can change without changing these.
+
+    digests: a dict of those of packed files, by address, for calls between which nothing changes.
+    """
     if image.is_dirty or image.source == "VIEWER":
         return None
     settings = (image.source, image.alpha_mode, image.colorspace_settings.name, image.filepath, seen)
@@ -19,9 +23,18 @@ def image_state(image, seen):
         return (*settings, working, *made)
     packed = tuple(item.packed_file for item in image.packed_files) or ((image.packed_file,) if image.packed_file else ())
     if packed and not seen.path:
-        # Blender does not tell that a script has packed other contents.
-        return (*settings, working, *(hashlib.sha256(item.data).digest() for item in packed if item is not None))
+        digests = {} if digests is None else digests
+        return (*settings, working, *(_digest(item, digests) for item in packed if item is not None))
     return (*settings, working, *_files_of(image, seen.path))
+
+
+def _digest(packed, digests):
+    """Return the digest of a packed file's contents: Blender does not tell that a script has packed others."""
+    key = packed.as_pointer()
+    if key not in digests:
+        main_thread.look()
+        digests[key] = hashlib.sha256(packed.data).digest()
+    return digests[key]
 
 
 def _files_of(image, path):

@@ -114,16 +114,16 @@ class Images:
         keys = {}
         for key in self._states:
             keys.setdefault(key[0], []).append(key)
-        found = set()
+        found, digests = set(), {}
         for image in bpy.data.images if keys else ():
             own = keys.pop(identity(image), ())
             # A key has the seen file as its fourth part.
-            if any(self._states[key] is None or self._states[key] != self._state(image, key[3]) for key in own):
+            if any(self._states[key] is None or self._states[key] != self._state(image, key[3], digests) for key in own):
                 found.add(identity(image))
         return found | set(keys)
 
-    def _state(self, image, seen):
-        state = image_state(image, seen)
+    def _state(self, image, seen, digests=None):
+        state = image_state(image, seen, digests)
         return None if state is None else (state, has_cached_file(self.texture_cache, image, seen))
 
     def forget(self, changed, used):
