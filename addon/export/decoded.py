@@ -1,4 +1,4 @@
-"""Files of 8-bit images as bytes, which scripts can read since Blender 5.2: as floats they need four times the memory."""
+"""Files of images with 8 bits as bytes, which scripts can read since Blender 5.2: floats need four times the memory."""
 
 import contextlib
 from typing import NamedTuple
@@ -6,7 +6,9 @@ from typing import NamedTuple
 import imbuf
 import numpy as np
 
-_READS_BYTES = hasattr(imbuf.types.ImBuf, "with_buffer")
+from ..host import main_thread
+
+READS_BYTES = hasattr(imbuf.types.ImBuf, "with_buffer")
 _START = 25  # bytes of a file that tell its kind
 _PNG, _DEPTH_OF_PNG, _EIGHT_BITS = b"\x89PNG\r\n\x1a\n", 24, 8
 _JPEG, _BMP, _RIFF, _WEBP = b"\xff\xd8\xff", b"BM", b"RIFF", b"WEBP"
@@ -40,7 +42,9 @@ def decoded_bytes(data):
 
 @contextlib.contextmanager
 def _decoded(start, load):
-    buffer = _loaded(load) if _READS_BYTES and _has_bytes(start) else None
+    # Decoding takes a moment for a large image, and a set of tiles has many.
+    main_thread.look()
+    buffer = _loaded(load) if READS_BYTES and _has_bytes(start) else None
     try:
         if buffer is None or buffer.buffer_type != "BYTE":
             yield None

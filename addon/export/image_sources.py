@@ -9,7 +9,7 @@ import bpy
 from ..host import main_thread
 from ..messages.severity import Severity
 from .colorspace import loaded, stored
-from .decoded import decoded_bytes, decoded_file
+from .decoded import READS_BYTES, decoded_bytes, decoded_file
 from .layered_exr import combined_pass, has_layers, shown_by_cycles
 from .missing import HAS_TEXEL, missing
 from .texels import mid_grey, read_texels
@@ -57,7 +57,8 @@ def has_cached_file(cache, image, seen):
 def read_memory(image, _, tell):
     """Read the pixels that Blender has, or decodes from a packed file."""
     # Blender divides the bytes of some images by alpha.
-    if not image.has_data and image.source == "FILE" and image.packed_file is not None and image.alpha_mode != "PREMUL":
+    is_packed = image.source == "FILE" and image.packed_file is not None
+    if READS_BYTES and is_packed and not image.has_data and image.alpha_mode != "PREMUL":
         with decoded_bytes(image.packed_file.data) as found:
             if found is not None:
                 return read_texels(image, found, tell, _space(image))
@@ -86,12 +87,13 @@ def _read_file(image, path, tell, tile=0):
         if not has_layers(path):
             with decoded_file(path) as found, contextlib.nullcontext(found) if found else stored(path) as source:
                 return read_texels(image, source, tell, _space(image), tile, path)
-        with open(path, "rb") as file:
-            plain = shown_by_cycles(file.read())
+        try:
+            with open(path, "rb") as file:
+                plain = shown_by_cycles(file.read())
+        except ValueError as error:
+            return _unread_layers(image, error, tell, tile)
         with _temporary(plain.data, ".exr") as copy, stored(copy) as source:
             return read_texels(image, source, tell, _space(image), tile, copy, plain.columns)
-    except ValueError as error:
-        return _unread_layers(image, error, tell, tile)
     except _UnwrittenError as error:
         return _unwritten(image, error, tell, tile)
     except (OSError, RuntimeError):

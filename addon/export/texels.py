@@ -114,7 +114,7 @@ def _converted(values, name, alpha):
     Colour is divided by alpha before the conversion and multiplied after it, so that interpolation sees associated alpha.
     """
     if values.dtype == np.uint8:
-        # Blender multiplies bytes by this number.
+        # The factor that Blender uses, for equal bits.
         values = values * np.float32(1.0 / _LARGEST_BYTE)
     full = np.ones((*values.shape[:2], 4), np.float32)
     full[:, :, : values.shape[2]] = values

@@ -9,6 +9,9 @@ import stage
 from export_cases import export_told
 from image_cases import image, ramp, show
 
+from addon.export import image_sources
+from addon.export.decoded import Decoded
+
 _KINDS = {"PNG": ("BW", "RGB", "RGBA"), "JPEG": ("BW", "RGB"), "WEBP": ("RGB", "RGBA"), "BMP": ("RGB",), "TARGA": ("RGBA",)}
 _MODES = ("STRAIGHT", "PREMUL", "CHANNEL_PACKED", "NONE")
 
@@ -39,6 +42,8 @@ def _bytes(path, alpha_mode):
 def kinds():
     """Return the texels of each kind of file, apart and packed, and those wanted; by the name of the image.
 
+    Return also the names of the images that were read as bytes.
+
     A packed image that is to be divided by alpha is left out: Blender has divided its bytes.
     """
     stage.empty()
@@ -55,6 +60,16 @@ def kinds():
                     item.buffers_free()
                 show(item)
                 wanted[item.name] = _bytes(path, mode).tolist()
+    decoded, read_texels = [], image_sources.read_texels
+
+    def watched(item, source, *arguments):
+        if isinstance(source, Decoded):
+            decoded.append(item.name)
+        return read_texels(item, source, *arguments)
+
+    image_sources.read_texels = watched
     exported, messages = export_told()
+    image_sources.read_texels = read_texels
     texels = {picture.name: picture.texels.tolist() for picture in exported.images}
-    return {"wanted": wanted, "got": texels, "messages": list(messages)}
+    told = {"messages": list(messages), "version": list(bpy.app.version)}
+    return {"wanted": wanted, "got": texels, "decoded": decoded, **told}

@@ -9,7 +9,7 @@ import bpy
 from image_cases import ramp, write
 
 from addon.bindings.session import Cancelled
-from addon.export import colorspace
+from addon.export import image_sources
 from addon.export.images import Images
 from addon.host import main_thread
 
@@ -82,21 +82,21 @@ def stopped():
     for number in range(1001, 1010):
         if number not in known:
             image.tiles.new(number)
-    read, load = [], colorspace._load
+    read, read_texels = [], image_sources.read_texels
 
-    def counted(data, path, *arguments):
-        read.append(os.path.basename(path))
-        return load(data, path, *arguments)
+    def counted(*arguments):
+        read.append(1)
+        return read_texels(*arguments)
 
     def obey():
-        if sum(name.startswith("tile") for name in read) == 3:
+        if len(read) == 3:
             raise Cancelled
 
-    colorspace._load = counted
+    image_sources.read_texels = counted
     try:
         Images(obey).numbers(image, None, lambda text: None)
         end = "read"
     except Cancelled:
         end = "cancelled"
-    colorspace._load = load
-    return {"tiles": sum(name.startswith("tile") for name in read), "end": end}
+    image_sources.read_texels = read_texels
+    return {"tiles": len(read), "end": end}

@@ -11,7 +11,7 @@ import bpy
 import numpy as np
 import stage
 
-from addon.export import colorspace, texels
+from addon.export import colorspace, image_sources
 
 _SIZE = 256
 # Colours as bytes: two tiles, the second frame of a sequence, premultiplied bytes, a colour space that is not a curve.
@@ -89,7 +89,7 @@ def watch(say):
 
     for name in ("_load", "_write"):
         setattr(colorspace, name, watched(name.strip("_"), getattr(colorspace, name)))
-    texels.floats = watched("read", texels.floats)
+    image_sources.read_texels = watched("read", image_sources.read_texels)
 
 
 def _save(folder, name):
