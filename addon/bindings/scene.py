@@ -1,4 +1,7 @@
-"""Scenes of the library: filled with the records of a snapshot, committed, and taken over in parts by later scenes."""
+"""Scenes of the library: filled with the records of a snapshot, committed, and taken over in parts by later scenes.
+
+poll is a function without arguments that is called at least every 0.1 s while waiting; it returns True to cancel.
+"""
 
 import ctypes
 

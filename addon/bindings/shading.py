@@ -46,7 +46,7 @@ class Parameters(Record):
     def __post_init__(self):
         values = vars(self)
         for name in self.PARAMETERS:
-            # Most are floats: a scene may have a hundred thousand.
+            # Most parameters are floats, and a scene may have a hundred thousand.
             if type(values[name]) is not float:
                 values[name] = _parameter(values[name])
 

@@ -3,8 +3,8 @@
 import contextlib
 import dataclasses
 
-from ..bindings.blocks import Blocks, even_sample
-from ..bindings.scene import Cancelled
+from ..bindings.blocks import Sampled
+from ..bindings.session import Cancelled
 from ..measure.scene_features import used_features
 from .quick_check import quick_check
 
@@ -23,11 +23,12 @@ class Later:
     def __init__(self, scene, snapshot, is_kept, is_over, tell):
         """is_kept: whether the snapshot stays in memory anyway; else the work of a large one is done at once.
 
-        Raise Cancelled if the user cancels that.
+        Raise Cancelled if the user cancels the work.
         """
         self.uses = []
-        # The upload takes the records out of the snapshot.
-        whole = snapshot.replaced(images=tuple(map(_sampled, snapshot.images)))
+        # The upload takes the records out of the snapshot. Checks read a sample of the texels.
+        images = tuple(image.replaced(texels=Sampled(image.texels)) for image in snapshot.images)
+        whole = snapshot.replaced(images=images)
         self._work = [lambda: self._look(scene, whole, is_over, tell)]
         if not is_kept and _size(snapshot) > _MOST_KEPT:
             self._run()
@@ -48,14 +49,6 @@ class Later:
     def _look(self, scene, snapshot, is_over, tell):
         self.uses = [dataclasses.asdict(feature) for feature in used_features(snapshot)]
         tell(quick_check(scene, snapshot, is_over))
-
-
-def _sampled(image):
-    """Return an image that has the sample of its texels alone, which is all that checks read."""
-    texels = image.texels
-    if isinstance(texels, Blocks):
-        return image
-    return image.replaced(texels=Blocks(texels.shape, texels.dtype, None, 0, 0, even_sample(texels).copy()))
 
 
 def _size(snapshot):

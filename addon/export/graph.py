@@ -205,6 +205,7 @@ class NodeGraph(NodeBuilder):
         return 0.0 if isinstance(value, float) else (0.0, 0.0, 0.0)
 
     def _read(self, site, socket):
+        # Most sockets have no link, and need no Origin.
         if not socket.is_linked:
             return _constant(socket)
         origin = self.origin(site, socket)

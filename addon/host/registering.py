@@ -21,5 +21,8 @@ def add_handlers(handlers):
 
 
 def remove_handlers(handlers):
+    """Remove the handlers that are there: scripts may have cleared a list."""
     for name, handler in handlers:
-        getattr(bpy.app.handlers, name).remove(handler)
+        known = getattr(bpy.app.handlers, name)
+        if handler in known:
+            known.remove(handler)
