@@ -67,7 +67,7 @@ def put(path, version, **fields):
 def test_install_update_remove_from_a_server(which, tmp_path):
     newer = newest_zip(which)
     old = older(newer, str(tmp_path))
-    # Of another length: Python takes a file of the same second and size for the one that it has compiled.
+    # Give the second release another length: Python takes a file of the same second and size for the one that it has compiled.
     plan = [(old, "1.0.0"), (old, "1.10.0"), (newer, "1.10.0")]
     got = inside(which, tmp_path, "repository.py", *(repository(tmp_path / str(i), *item) for i, item in enumerate(plan)))
     for told, (zip_, other) in zip(got["states"], plan, strict=True):
