@@ -8,6 +8,7 @@ from ..host.by_scene import ByScene
 from ..host.registering import add_handlers, remove_handlers
 
 _kept = ByScene()
+_jobs = 0  # how many renders, of a picture or an animation, have begun
 
 
 def begin(scene, is_animation):
@@ -27,7 +28,7 @@ class Following:
     """The Parts of an engine whose depsgraph Blender keeps from one picture to the next."""
 
     def __init__(self):
-        self._key = self._parts = None
+        self._key = self._parts = self._job = None
 
     def take(self, depsgraph, layers):
         """Return the Parts for an export of the depsgraph, to be given back; None if the next picture has another depsgraph.
@@ -41,12 +42,24 @@ class Following:
         if not depsgraph.scene.render.use_persistent_data or layers > 1:
             return None
         self._key = key
-        return parts if parts is not None and key == before else Parts(watches=True)
+        if parts is None or key != before:
+            parts = Parts(watches=True)
+        # Reading packed files takes seconds for a gigabyte, too long for each frame of an animation.
+        if self._job != _jobs:
+            parts.images.digests.clear()
+            self._job = _jobs
+        return parts
 
     def give_back(self, parts):
         # The function belongs to the engine, which owns this object.
         parts.images.obey = None
         self._parts = parts
+
+
+@persistent
+def _begun(*_):
+    global _jobs
+    _jobs += 1
 
 
 @persistent
@@ -62,7 +75,7 @@ def _forget_kept(scene, *_):
         _kept.pop(scene, None)
 
 
-_HANDLERS = (("load_pre", _forget), ("render_complete", _forget_kept), ("render_cancel", _forget_kept))
+_HANDLERS = (("render_init", _begun), ("load_pre", _forget), ("render_complete", _forget_kept), ("render_cancel", _forget_kept))
 
 
 def register():

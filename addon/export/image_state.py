@@ -12,7 +12,7 @@ from .tiles import path_of_tile
 def image_state(image, seen, digests=None):
     """Return the files and the settings of an image; None if its pixels can change without changing these.
 
-    digests: a dict of those of packed files, by address, for calls between which nothing changes.
+    digests: a dict of those of packed files, by address and size, for calls between which no script packs others.
     """
     if image.is_dirty or image.source == "VIEWER":
         return None
@@ -30,7 +30,7 @@ def image_state(image, seen, digests=None):
 
 def _digest(packed, digests):
     """Return the digest of a packed file's contents: Blender does not tell that a script has packed others."""
-    key = packed.as_pointer()
+    key = packed.as_pointer(), packed.size
     if key not in digests:
         main_thread.look()
         digests[key] = hashlib.sha256(packed.data).digest()

@@ -36,6 +36,7 @@ class Images:
         self.texture_cache = None  # the scene's TextureCache
         self.watches = watches
         self._states = {}  # image_state() by the keys of _ranges
+        self.digests = {}  # of image_state(); to be emptied where a script may have packed other files
         self._kept = kept
         self._scratch = Scratch()
         self._ranges = {}
@@ -114,16 +115,16 @@ class Images:
         keys = {}
         for key in self._states:
             keys.setdefault(key[0], []).append(key)
-        found, digests = set(), {}
+        found = set()
         for image in bpy.data.images if keys else ():
             own = keys.pop(identity(image), ())
             # A key has the seen file as its fourth part.
-            if any(self._states[key] is None or self._states[key] != self._state(image, key[3], digests) for key in own):
+            if any(self._states[key] is None or self._states[key] != self._state(image, key[3]) for key in own):
                 found.add(identity(image))
         return found | set(keys)
 
-    def _state(self, image, seen, digests=None):
-        state = image_state(image, seen, digests)
+    def _state(self, image, seen):
+        state = image_state(image, seen, self.digests)
         return None if state is None else (state, has_cached_file(self.texture_cache, image, seen))
 
     def forget(self, changed, used):

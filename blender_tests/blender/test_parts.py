@@ -113,6 +113,12 @@ def test_edits_between_pictures(which, tmp_path):
 
 
 @pytest.mark.parametrize("which", [MODULE, PROGRAM])
+def test_an_animation_reads_packed_files_once(which, tmp_path):
+    """The first frame reads the file with its texels; a script may pack another one before the next render."""
+    assert blenders.run(which, tmp_path, "picture_edit_cases", "packed") == [[0, 0, 0, 0], [1]]
+
+
+@pytest.mark.parametrize("which", [MODULE, PROGRAM])
 def test_images_do_not_accumulate(which, tmp_path):
     """Lamps share the table of a text, and later tables take the places of those not used any more."""
     got = blenders.run(which, tmp_path, "lamp_edit_cases", "growth")

@@ -7,6 +7,7 @@ import tempfile
 import bpy
 from parts_cases import build, edit_material, edit_mesh, plain, set_to
 
+from addon.export.images import Images
 from addon.export.scene import export_scene
 
 
@@ -149,3 +150,31 @@ def pictures():
     finally:
         render_engine.export_scene = export_scene
     return results
+
+
+def packed():
+    """Return how many packed files were read anew by an animation of four frames with Persistent Data, and by F12 after it."""
+    scene = build()
+    _pack(0.5)()
+    scene.render.resolution_x = scene.render.resolution_y = 8
+    scene.lancer.samples = 1
+    scene.render.use_persistent_data = True
+    scene.frame_start, scene.frame_end = 1, 4
+    scene.render.filepath = os.path.join(tempfile.mkdtemp(), "frame")
+    read, changed, counts = [], Images.changed, []
+
+    def watched(images):
+        before = len(images.digests)
+        found = changed(images)
+        read.append(len(images.digests) - before)
+        return found
+
+    Images.changed = watched
+    try:
+        for is_animation in (True, False):
+            bpy.ops.render.render(animation=is_animation)
+            counts.append(list(read))
+            read.clear()
+    finally:
+        Images.changed = changed
+    return counts
