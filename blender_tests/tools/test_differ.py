@@ -11,7 +11,7 @@ from tools.differ.record import Record
 from tools.differ.shrinker import shrink
 
 # Of these scenes both engines show the same within few samples. Whoever changes the generator looks for others.
-SEEDS = (6, 14, 20, 23, 28, 29, 33, 34, 36, 40, 47, 53, 56, 58, 62, 63, 66, 68, 71, 73)
+SEEDS = (6, 14, 23, 28, 29, 33, 34, 36, 40, 47, 56, 58, 62, 63, 66, 68, 71, 73, 74, 76)
 
 
 def test_scenes_are_the_same_each_time():

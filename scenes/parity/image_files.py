@@ -1,4 +1,4 @@
-"""Image files of sixteen bits and more, as scanners, sculptors and photographers save them."""
+"""Image files, as scanners, sculptors and photographers save them."""
 
 import os
 import struct
@@ -8,6 +8,9 @@ import numpy as np
 
 from . import png
 from .images import image
+
+# Endings of the formats that Blender writes.
+_ENDINGS = {"OPEN_EXR": ".exr", "HDR": ".hdr", "JPEG": ".jpg", "WEBP": ".webp", "BMP": ".bmp", "TARGA": ".tga"}
 
 
 def load(path, colorspace):
@@ -115,7 +118,7 @@ def _by_blender(kind, stem, pixels):
     full = np.ones((*pixels.shape[:2], 4))
     full[..., : pixels.shape[2]] = pixels
     source = image("Written", full, "Non-Color", is_float=True, pack=False)
-    path = stem + {"OPEN_EXR": ".exr", "HDR": ".hdr"}[kind]
+    path = stem + _ENDINGS[kind]
     source.filepath_raw, source.file_format = path, kind
     source.save()
     bpy.data.images.remove(source)

@@ -2,7 +2,10 @@
 
 from .record import Record
 
-_FORMATS = {"BYTE": 3, "FLOAT": 1, "PNG8": 2, "PNG16": 1, "TIFF": 1, "OPEN_EXR": 1, "EXR 16": 1, "EXR 32": 1, "HDR": 1}
+_FORMATS = {
+    "BYTE": 3, "FLOAT": 1, "PNG8": 2, "PNG16": 1, "TIFF": 1, "OPEN_EXR": 1, "EXR 16": 1, "EXR 32": 1, "HDR": 1, "JPEG": 1,
+    "WEBP": 1, "BMP": 1, "TARGA": 1,
+}  # fmt: skip
 _SPACES = {
     "sRGB": 6, "Non-Color": 3, "Linear": 2, "Filmic sRGB": 1, "ACEScg": 1, "Display P3": 1, "AgX Base sRGB": 1, "Rec.1886": 1,
     "Linear Rec.2020": 1,
