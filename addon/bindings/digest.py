@@ -7,11 +7,11 @@ import numpy as np
 
 from .blocks import Blocks
 
-_PARTS = ("meshes", "instances", "materials", "lights", "images", "world")
+_PARTS = ("meshes", "instances", "materials", "lights", "images", "world", "motion")
 
 
 def scene_digest(snapshot):
-    """Return 32 bytes that name the snapshot's scene, without camera and settings."""
+    """Return 32 bytes that name the snapshot's scene with its motion, without camera and settings."""
     digest = hashlib.sha256()
     for name in _PARTS:
         _add(digest, getattr(snapshot, name))

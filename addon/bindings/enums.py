@@ -5,7 +5,7 @@ Generated from core/include/lancer.h by `make bindings`; changes here are lost.
 
 from enum import IntEnum, IntFlag
 
-ABI_VERSION = 14
+ABI_VERSION = 15
 MOST_NODE_RAYS = 128
 MOST_NODES = 4096
 DEEPEST_RECURSION = 16
@@ -51,6 +51,7 @@ class Struct(IntEnum):
     PART = 23
     PORTAL = 24
     MADE = 25
+    MOTION = 26
 
 
 class NormalDomain(IntEnum):

@@ -82,6 +82,7 @@ def mesh(m):
         triangle_count=len(m.triangles),
         normal_domain=domain,
         attribute_count=len(m.attributes),
+        key_count=0 if m.moved_positions is None else len(m.moved_positions),
     )
 
 
@@ -105,6 +106,25 @@ def instances(table):
     # The pointer from data_as keeps the array alive; a plain address would not.
     pointer = rows.ctypes.data_as(ctypes.c_void_p)
     return len(rows), pointer, len(table.slots), _address(table.slots), names, len(names)
+
+
+def instance_motion(motion):
+    """Return the arguments of lancer_scene_move_instances after the scene."""
+    return len(motion.instances), _address(motion.instances), motion.matrices.shape[1], _address(motion.matrices)
+
+
+def motion(m):
+    """Return the abi.Motion of a Motion; None is a scene that is shown as it stands."""
+    if m is None:
+        return abi.Motion()
+    keys = _many(abi.Camera, (camera(key) for key in m.keys))
+    return _struct(
+        abi.Motion,
+        m,
+        shutter_count=0 if m.shutter is None else len(m.shutter),
+        key_count=len(m.keys),
+        keys=keys,
+    )
 
 
 def object_attribute(attribute):

@@ -85,6 +85,8 @@ class Scene(Handle, SceneProbes):
             self._set_instances(snapshot.instances)
             self._instances = snapshot.instances
             yield
+        motion = marshal.motion(snapshot.motion)
+        self._check(self.library.lancer_scene_set_motion(self.handle, ctypes.byref(motion)))
         if release:
             snapshot.set("instances", InstanceTable())
             self._instances = None
@@ -121,6 +123,8 @@ class Scene(Handle, SceneProbes):
             self._check(self.library.lancer_scene_set_object_infos(self.handle, len(table.infos), table.infos.ctypes.data))
         for attribute in table.attributes:
             self._check(self.library.lancer_scene_add_object_attribute(self.handle, *marshal.object_attribute(attribute)))
+        for motion in table.motions:
+            self._check(self.library.lancer_scene_move_instances(self.handle, *marshal.instance_motion(motion)))
 
     def likeness(self, snapshot):
         """Return how many meshes of a snapshot may be those of this scene, by name and size."""

@@ -68,6 +68,8 @@ class MeshData(Record):
     material_slots: np.ndarray | None = None  # (T,)
     polygons: np.ndarray | None = None  # (T,), each below T: the polygon of each triangle; None: one polygon per triangle
     attributes: tuple[MeshAttribute, ...] = ()
+    moved_positions: np.ndarray | None = None  # (K, V, 3) of a mesh that changes its shape, at the keys of a Motion
+    moved_normals: np.ndarray | None = None  # (K,) + those of normals; None: the normals keep
 
     def __post_init__(self):
         what = f"mesh '{self.name}': "
@@ -85,6 +87,12 @@ class MeshData(Record):
             self.set("material_slots", array(self.material_slots, np.uint16, (count,), what + "material_slots"))
         if self.polygons is not None:
             self.set("polygons", array(self.polygons, np.uint32, (count,), what + "polygons"))
+        if self.moved_positions is not None:
+            shape = (None, vertices, 3)
+            self.set("moved_positions", array(self.moved_positions, np.float32, shape, what + "moved_positions"))
+        if self.moved_normals is not None:
+            shape = (len(self.moved_positions), *np.shape(self.normals))
+            self.set("moved_normals", array(self.moved_normals, np.float32, shape, what + "moved_normals"))
         self.set("attributes", tuple(self.attributes))
         rows = {Domain.VERTEX: vertices, Domain.FACE: count, Domain.CORNER: 3 * count}
         for attribute in self.attributes:
@@ -129,6 +137,20 @@ class ObjectAttribute(Record):
         self.set("values", array(self.values, np.float32, (None, 4), f"object attribute '{self.name}'"))
 
 
+@register
+@dataclass(frozen=True, eq=False)
+class InstanceMotion(Record):
+    """Instances that move: their numbers (n,), and their matrices (n, K, 3, 4) at the keys of a Motion."""
+
+    instances: np.ndarray = field(default_factory=lambda: np.empty(0, np.uint32))
+    matrices: np.ndarray = field(default_factory=lambda: np.empty((0, 3, 3, 4)))
+
+    def __post_init__(self):
+        self.set("instances", array(self.instances, np.uint32, (None,), "moving instances"))
+        shape = (len(self.instances), None, 3, 4)
+        self.set("matrices", array(self.matrices, np.float64, shape, "matrices of moving instances"))
+
+
 _INSTANCE_COLUMNS = (
     "kinds", "meshes", "first_slots", "slot_counts", "object_indices", "shadings", "name_indices", "hidden_from", "flags",
 )  # fmt: skip
@@ -154,6 +176,7 @@ class InstanceTable(Record):
     attributes: tuple[ObjectAttribute, ...] = ()
     names: tuple[str, ...] = ()
     slots: np.ndarray = field(default_factory=lambda: np.empty(0, np.uint32))
+    motions: tuple[InstanceMotion, ...] = ()  # one for each number of keys
 
     def __post_init__(self):
         count = len(self.matrices)
@@ -171,6 +194,10 @@ class InstanceTable(Record):
         self.set("slots", array(self.slots, np.uint32, (None,), "slots"))
         self.set("names", tuple(self.names))
         self.set("attributes", tuple(self.attributes))
+        self.set("motions", tuple(self.motions))
+        for motion in self.motions:
+            if len(motion.instances) and int(motion.instances.max()) >= count:
+                raise ValueError(f"moving instance {int(motion.instances.max())} >= {count} instances")
         for attribute in self.attributes:
             if len(attribute.values) != count:
                 raise ValueError(f"object attribute '{attribute.name}' has {len(attribute.values)} rows for {count} instances")
@@ -274,6 +301,22 @@ class Camera(Record):
             self.set("region_height", self.height - self.y)
 
 
+@register
+@dataclass(frozen=True, eq=False)
+class Motion(Record):
+    """The shutter, and the camera at keys, at equal steps from its opening to its closing; see lancer_motion."""
+
+    shutter: np.ndarray | None = None  # how far it is open, at equal steps; None: all samples are of the middle time
+    keys: tuple[Camera, ...] = ()  # none: the camera stands still
+    rolling: bool = False
+    rolling_duration: float = 0.1
+
+    def __post_init__(self):
+        if self.shutter is not None:
+            self.set("shutter", array(self.shutter, np.float32, (None,), "shutter"))
+        self.set("keys", tuple(self.keys))
+
+
 # The members of lancer_settings with their defaults; refines follows from the other settings.
 _CoreSettings = make_dataclass(
     "_CoreSettings",
@@ -315,6 +358,7 @@ class SceneSnapshot(Record):
     world: World = field(default_factory=World)  # or its constant radiance
     camera: Camera = field(default_factory=Camera)
     settings: Settings = field(default_factory=Settings)
+    motion: Motion | None = None  # None: everything is shown as it stands
 
     def __post_init__(self):
         for name in ("meshes", "materials", "lights", "images"):

@@ -39,6 +39,10 @@ class Mesh(Structure):
         ("triangle_count", c_uint32),
         ("normal_domain", c_uint32),
         ("attribute_count", c_uint32),
+        ("moved_positions", Array),
+        ("moved_normals", Array),
+        ("key_count", c_uint32),
+        ("reserved", c_uint32),
     ]
 
 
@@ -267,6 +271,20 @@ class Camera(Structure):
         ("focal_distance", c_double),
         ("aperture_rotation", c_double),
         ("aperture_ratio", c_double),
+    ]
+
+
+class Motion(Structure):
+    """Motion while the shutter is open."""
+
+    _fields_ = [
+        ("shutter", Array),
+        ("shutter_count", c_uint32),
+        ("key_count", c_uint32),
+        ("keys", POINTER(Camera)),
+        ("rolling", c_uint32),
+        ("reserved", c_uint32),
+        ("rolling_duration", c_double),
     ]
 
 
@@ -506,6 +524,7 @@ STRUCTS = {
     Struct.PART: Part,
     Struct.PORTAL: Portal,
     Struct.MADE: Made,
+    Struct.MOTION: Motion,
 }
 
 # Kind and default of each parameter, from lancer.h.

@@ -10,8 +10,10 @@ import bpy
 from ..bindings.abi import LancerError
 from ..bindings.session import Cancelled, Scene, Session
 from ..denoise import view_layer as denoise
+from ..export.moving_scene import export_moving_scene
 from ..export.scene import ExportOptions, export_scene
 from ..export.settings import threads_of
+from ..export.shutter import shutter_of
 from ..host import main_thread, redraw, shared_scenes
 from ..host.priority import lowered
 from ..measure.schedule import Schedule, TimeShare
@@ -184,8 +186,15 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         begin = self._ahead.mesh if many_machines.wanted(scene) is None and scene.lancer.accelerator == "BVH" else None
         self._following = self._following or kept_pictures.Following()
         kept, parts = kept_pictures.of(scene), self._following.take(depsgraph, len(self.get_result().layers))
+        shutter = shutter_of(scene, wants_vectors=False)
+        if shutter is not None:
+            # The updates of a depsgraph that is evaluated at several times do not tell what has changed.
+            parts = begin = None
         options = ExportOptions(self.camera_override, passes.sources(wanted), None if parts else kept, parts, begin)
-        self._snapshot, messages = export_scene(depsgraph, options, self._is_over)
+        if shutter is None:
+            self._snapshot, messages = export_scene(depsgraph, options, self._is_over)
+        else:
+            self._snapshot, messages = export_moving_scene(depsgraph, options, shutter, self.frame_set, self._is_over)
         if parts is not None:
             self._following.give_back(parts)
             kept.count_parts(self._snapshot, parts)

@@ -27,6 +27,10 @@ def with_even_normals(meshes, table, geometries, materials, known):
     """
     numbers = np.unique(np.array(geometries, np.int64).reshape(-1), return_inverse=True)[1][table.name_indices]
     alone = (np.bincount(numbers)[numbers] == 1) & (table.kinds == _MESH) if len(numbers) else np.zeros(0, bool)
+    # What moves is never transformed beforehand.
+    for motion in table.motions:
+        alone[motion.instances] = False
+    alone &= np.array([mesh.moved_positions is None for mesh in meshes] or [True])[np.where(alone, table.meshes, 0)]
     rows = np.flatnonzero(alone)
     rows = rows[_are_uneven(np.asarray(table.matrices, float)[rows, :, :3])]
     before = dict(known)

@@ -45,13 +45,14 @@ class Places(NamedTuple):
                 return False
         return number + 1 == count
 
-    def matrices(self, depsgraph):
-        """(rows, 3, 4)."""
+    def matrices(self, depsgraph, entries=None):
+        """(rows, 3, 4). entries: of each row, in a depsgraph whose entries are in another order."""
+        entries = self.entries if entries is None else entries
         columns = self._columns(depsgraph.object_instances)
-        matrices = columns[self.entries, :, :3].transpose(0, 2, 1).astype(float, "C")
+        matrices = columns[entries, :, :3].transpose(0, 2, 1).astype(float, "C")
         rows = np.flatnonzero(self.placements >= 0)
         if len(rows):
-            whole = columns[self.entries[rows]].transpose(0, 2, 1).astype(float)
+            whole = columns[entries[rows]].transpose(0, 2, 1).astype(float)
             matrices[rows] = (whole @ np.array(self.exact)[self.placements[rows]])[:, :3]
         return matrices
 
@@ -60,7 +61,7 @@ class Places(NamedTuple):
         if self.one_by_one:
             # Copy each matrix at once: the walk moves the entry that the matrix refers to.
             return np.array([np.array(entry.matrix_world) for entry in walk], np.float32).transpose(0, 2, 1)
-        columns = np.empty(16 * self.count, np.float32)
+        columns = np.empty(16 * len(walk), np.float32)
         walk.foreach_get("matrix_world", columns)
         return columns.reshape(-1, 4, 4)
 

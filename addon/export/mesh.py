@@ -3,6 +3,7 @@
 import contextlib
 import ctypes
 from dataclasses import replace
+from typing import NamedTuple
 
 import bpy
 import numpy as np
@@ -74,6 +75,38 @@ def export_mesh(mesh, name, poll, wanted=frozenset()):
         polygons=np.unique(faces, return_inverse=True)[1] if POLYGONS in wanted and faces is not None else None,
     )
     return replace(data, attributes=read_attributes(mesh, data, wanted, corners, faces, poll)) if wanted else data
+
+
+class Shape(NamedTuple):
+    """The form of a mesh at one time: its normals as in MeshData."""
+
+    positions: np.ndarray
+    triangles: int
+    normals: np.ndarray | None
+
+    def like(self, other):
+        """Whether both have the same vertices and faces, so that one may turn into the other."""
+        same = self.positions.shape == other.positions.shape and self.triangles == other.triangles
+        return same and np.shape(self.normals) == np.shape(other.normals)
+
+    def fits(self, data):
+        """Whether a MeshData has these vertices and faces."""
+        return self.like(Shape(data.positions, len(data.triangles), data.normals))
+
+
+def read_shape(mesh, poll):
+    """Return the Shape of a mesh."""
+    positions = read_positions(mesh)
+    poll()
+    mesh.calc_loop_triangles()
+    count = len(mesh.loop_triangles)
+    if count == 0:
+        return Shape(positions, 0, None)
+    whole = count == len(mesh.polygons) and len(mesh.loops) == 3 * count
+    corners = None if whole else _triangle_corners(mesh, count)
+    vertices = corner_vertices(mesh)
+    triangles = vertices.reshape(-1, 3) if corners is None else gather(vertices, corners, poll)
+    return Shape(positions, count, shading_normals(mesh, positions, triangles, corners, poll))
 
 
 def read_positions(mesh):

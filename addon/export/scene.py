@@ -12,6 +12,7 @@ from .flat import report_flat
 from .images import Images
 from .instances import Instances
 from .materials import Materials
+from .motion import read_motion
 from .scene_state import scene_state
 from .settings import export_settings, world_of
 from .shader_cache import ShaderCache
@@ -29,6 +30,10 @@ class ExportOptions:
     parts: object = None  # the Parts of earlier exports
     on_mesh: object = None  # is called with each MeshData as soon as it is read
     is_preview: bool = False  # of a material, a world or a lamp
+    # For motion: the Shutter, a function that evaluates the depsgraph at a time in frames, and the ShaderCache of another time.
+    shutter: object = None
+    set_frame: object = None
+    shaders: object = None
     # For a window:
     view: object = None  # a snapshot.Camera that replaces the camera object
     dicing: object = None  # the snapshot.Camera by whose pixels meshes are divided
@@ -69,9 +74,10 @@ def export_scene(depsgraph, options=None, poll=None):
             # The messages of the last export include those of the checks above, which have not changed.
             snapshot, messages, geometries = again
             return _placed(snapshot, geometries, messages, options, camera, settings), messages
-    images = Images(obey, options.kept) if parts is None else parts.images
+    images = parts.images if parts is not None else options.shaders.images if options.shaders else Images(obey, options.kept)
+    images.obey = obey
     images.frame, images.is_preview, images.texture_cache = scene.frame_current, options.is_preview, cache
-    shaders = ShaderCache(images) if parts is None else parts.shaders
+    shaders = parts.shaders if parts is not None else options.shaders or ShaderCache(images)
     materials = Materials(messages, override, images, depsgraph, shaders)
     in_view = options.view is not None
     divider = Divider(depsgraph, options.dicing if in_view else camera, messages, in_view)
@@ -92,6 +98,17 @@ def export_scene(depsgraph, options=None, poll=None):
         world=exported.world,
     )
     obey()
+    if options.shutter is not None:
+        snapshot = read_motion(
+            snapshot.replaced(camera=camera),
+            depsgraph,
+            options.camera or scene.camera,
+            instances.places,
+            options.shutter,
+            options.set_frame,
+            messages,
+            obey,
+        )
     if parts is not None:
         # The instance of a lamp moves with its instancer; the places of object and camera decide how a mesh is divided.
         moves_freely = not (instances.has_lamp_instances or divider.depends_on_places)

@@ -62,19 +62,19 @@ class _Asked:
     """A wrapper of Images that records the requests of one shader."""
 
     def __init__(self, images):
-        self._images = images
+        self.images = images
         self.pictures, self.numbers_used, self.with_time = set(), set(), False
 
     @property
     def list(self):
-        return self._images.list
+        return self.images.list
 
     @property
     def texture_cache(self):
-        return self._images.texture_cache
+        return self.images.texture_cache
 
     def numbers(self, image, user, tell, in_memory=False):
-        found = self._images.numbers(image, user, tell, in_memory)
+        found = self.images.numbers(image, user, tell, in_memory)
         self.pictures.add(identity(image))
         self.with_time = self.with_time or image.source in _CHANGES_WITH_TIME
         if found is not None:
@@ -82,12 +82,12 @@ class _Asked:
         return found
 
     def repeat(self, pictures):
-        first = self._images.repeat(pictures)
+        first = self.images.repeat(pictures)
         self.numbers_used.update(range(first, first + len(pictures)))
         return first
 
     def table(self, texels):
-        number = self._images.table(texels)
+        number = self.images.table(texels)
         self.numbers_used.add(number)
         return number
 
@@ -96,7 +96,7 @@ class ShaderCache:
     """count is the number of shaders read since begin()."""
 
     def __init__(self, images):
-        self._images = images
+        self.images = images
         self._known, self._used = {}, {}
         self.count = 0
 
@@ -127,7 +127,7 @@ class ShaderCache:
     def _read(self, read, value):
         """Return names and values of the facts that read asks for, and the _Shader."""
         self.count += 1
-        asked, told, facts = _Asked(self._images), Messages(), {}
+        asked, told, facts = _Asked(self.images), Messages(), {}
 
         def fact(name):
             facts[name] = value(name, told)

@@ -34,8 +34,6 @@ _HAS_OFFSET = "shadow_terminator_shading_offset" in _OF_OBJECTS
 
 def check_scene(scene, messages, in_view=False):
     who = f"scene '{scene.name}'"
-    if scene.render.use_motion_blur:
-        messages.add(f"{who}: motion blur is not supported, the frame is rendered sharp", "feature:motion blur")
     if scene.render.use_multiview:
         messages.add(f"{who}: stereoscopy is not supported, every view shows the scene's camera", "feature:stereoscopy")
     check_cycles(scene, messages, in_view)

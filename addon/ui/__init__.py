@@ -3,16 +3,18 @@
 import bpy
 
 from ..host.registering import add_all
-from . import adopted, camera, check, described, light, material, messages, objects, render, uses, view_layer, world
+from . import adopted, camera, check, described, light, material, messages, motion, objects, render, uses, view_layer, world
 
 CLASSES = (
     *render.CLASSES,
+    *motion.CLASSES,
     *messages.CLASSES,
     *uses.CLASSES,
     *check.CLASSES,
     *view_layer.CLASSES,
     *world.CLASSES,
     *objects.CLASSES,
+    *motion.OBJECT_CLASSES,
     *camera.CLASSES,
     *light.CLASSES,
     *material.CLASSES,

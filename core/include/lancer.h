@@ -32,7 +32,7 @@ extern "C" {
 #endif
 
 /* Incremented with each change of a struct or a call of this header. */
-#define LANCER_ABI_VERSION 14u
+#define LANCER_ABI_VERSION 15u
 
 /* Limits: nodes of a material or world; recursion of CLASSIC, in which glass doubles the rays with every depth. */
 #define LANCER_MOST_NODE_RAYS 128u /* of an OCCLUSION or a BEVEL */
@@ -89,6 +89,7 @@ typedef enum lancer_struct {
   LANCER_STRUCT_PART,
   LANCER_STRUCT_PORTAL,
   LANCER_STRUCT_MADE,
+  LANCER_STRUCT_MOTION,
   LANCER_STRUCT_COUNT
 } lancer_struct;
 /* Returns sizeof the struct with this lancer_struct number, or 0 for an unknown number, so that a caller can refuse a stale
@@ -126,6 +127,11 @@ typedef struct lancer_mesh {
   uint32_t triangle_count;
   uint32_t normal_domain; /* LANCER_NORMALS_* */
   uint32_t attribute_count;
+  const float *moved_positions; /* of a mesh that changes its shape: [key_count][vertex_count][3]; the key in the middle is as
+                                   positions */
+  const float *moved_normals;   /* NULL: the normals keep; or [key_count] times as normals */
+  uint32_t key_count;           /* 0: the mesh keeps its shape; see lancer_motion */
+  uint32_t reserved;
 } lancer_mesh;
 
 /* Exact surfaces are defined in a unit frame; the instance's matrix translates, scales and shears them:
@@ -876,6 +882,11 @@ LANCER_API lancer_status lancer_scene_set_object_infos(lancer_scene scene, uint3
  * order of adding, including those left out. All other instances have 0. A name may be added once. */
 LANCER_API lancer_status lancer_scene_add_object_attribute(lancer_scene scene, const char *name, uint32_t count,
                                                            const float *values);
+/* Lets instances move: matrices[count][key_count][12] are their placements at the keys of lancer_motion, in place of the matrix
+ * that they were added with; instances[count]: their numbers in order of adding. An instance with a key that is not finite or
+ * not invertible stands still, with a message. An instance may be given once. */
+LANCER_API lancer_status lancer_scene_move_instances(lancer_scene scene, uint32_t count, const uint32_t *instances,
+                                                     uint32_t key_count, const double *matrices);
 /* Images are numbered 0, 1, 2 ... in order of adding. */
 LANCER_API lancer_status lancer_scene_add_image(lancer_scene scene, const lancer_image *image);
 
@@ -932,7 +943,7 @@ LANCER_API lancer_status lancer_scene_edit(lancer_scene before, lancer_scene *sc
 /* Replaces all objects of a kind, which are numbered 0, 1, 2 ... in this order. One world, or none: black. */
 LANCER_API lancer_status lancer_scene_set_objects(lancer_scene scene, uint32_t kind, uint32_t count,
                                                   const lancer_object *objects);
-/* Removes all instances with their infos and attributes. */
+/* Removes all instances with their infos, attributes and motions. */
 LANCER_API lancer_status lancer_scene_clear_instances(lancer_scene scene);
 
 enum lancer_accelerator { LANCER_BVH = 0, LANCER_KDTREE = 1, LANCER_BRUTE_FORCE = 2 };
@@ -981,6 +992,25 @@ typedef struct lancer_camera {
   double aperture_rotation;    /* of the blades, radians */
   double aperture_ratio;       /* height of the bokeh over its width; 1 = round */
 } lancer_camera;
+
+/* Motion while the shutter is open. Time runs from 0, where it opens, to 1, where it closes. Things that move are given at
+ * keys, at equal steps of time from 0 to 1; a number of keys is 3, 5, 9 ... 129. Between two keys vertices move along straight
+ * lines; of a placement, translation and stretch change linearly, and the rotation turns by the shortest way at constant speed.
+ */
+typedef struct lancer_motion {
+  const float *shutter;      /* [shutter_count] how far the shutter is open, at equal steps of time from 0 to 1: samples choose
+                                their times in proportion. Not negative; NULL: all samples are of the time 0.5, as a sharp picture
+                                with the pass VECTOR wants */
+  uint32_t shutter_count;    /* 0, or at least 2 */
+  uint32_t key_count;        /* of the camera; 0: it stands still */
+  const lancer_camera *keys; /* [key_count] the camera of a session at the keys: matrix, window, panorama, lens_radius and
+                                focal_distance are read. Its place in the picture is the session's */
+  uint32_t rolling;          /* 1: rows are exposed from the top of the picture to its bottom, as by a rolling shutter */
+  uint32_t reserved;
+  double rolling_duration; /* share of the shutter's time for which each row is exposed, 0 ... 1 */
+} lancer_motion;
+/* Sets the motion of a scene. A scene without it shows the time 0.5. */
+LANCER_API lancer_status lancer_scene_set_motion(lancer_scene scene, const lancer_motion *motion);
 
 enum lancer_integrator { LANCER_PATH = 0, LANCER_CLASSIC = 1, LANCER_NORMALS = 2 };
 enum lancer_pixel_filter { LANCER_FILTER_BOX = 0, LANCER_FILTER_BLACKMAN_HARRIS = 1 };

@@ -38,15 +38,13 @@ const char *lancer_last_error(void) { return last_error; }
 
 uint32_t lancer_sizeof(uint32_t which) {
   static constexpr size_t sizes[LANCER_STRUCT_COUNT] = {
-      sizeof(lancer_mesh),           sizeof(lancer_instance),    sizeof(lancer_parameter),
-      sizeof(lancer_lobe),           sizeof(lancer_material),    sizeof(lancer_light),
-      sizeof(lancer_camera),         sizeof(lancer_settings),    sizeof(lancer_progress),
-      sizeof(lancer_statistics),     sizeof(lancer_hit),         sizeof(lancer_vertex),
-      sizeof(lancer_light_sample),   sizeof(lancer_bsdf_sample), sizeof(lancer_attribute),
-      sizeof(lancer_image),          sizeof(lancer_node),        sizeof(lancer_principled),
-      sizeof(lancer_world),          sizeof(lancer_lobe_info),   sizeof(lancer_error),
-      sizeof(lancer_denoised_error), sizeof(lancer_range),       sizeof(lancer_part),
-      sizeof(lancer_portal),         sizeof(lancer_made)};
+      sizeof(lancer_mesh),         sizeof(lancer_instance),       sizeof(lancer_parameter), sizeof(lancer_lobe),
+      sizeof(lancer_material),     sizeof(lancer_light),          sizeof(lancer_camera),    sizeof(lancer_settings),
+      sizeof(lancer_progress),     sizeof(lancer_statistics),     sizeof(lancer_hit),       sizeof(lancer_vertex),
+      sizeof(lancer_light_sample), sizeof(lancer_bsdf_sample),    sizeof(lancer_attribute), sizeof(lancer_image),
+      sizeof(lancer_node),         sizeof(lancer_principled),     sizeof(lancer_world),     sizeof(lancer_lobe_info),
+      sizeof(lancer_error),        sizeof(lancer_denoised_error), sizeof(lancer_range),     sizeof(lancer_part),
+      sizeof(lancer_portal),       sizeof(lancer_made),           sizeof(lancer_motion)};
   return which < LANCER_STRUCT_COUNT ? uint32_t(sizes[which]) : 0;
 }
 
@@ -92,6 +90,17 @@ lancer_status lancer_scene_add_instances(lancer_scene scene, uint32_t count, con
 lancer_status lancer_scene_set_object_infos(lancer_scene scene, uint32_t count, const float *infos) {
   return fill_scene(scene, infos, "object infos",
                     [&](Description &description) { set_object_infos(description, count, infos); });
+}
+
+lancer_status lancer_scene_move_instances(lancer_scene scene, uint32_t count, const uint32_t *instances, uint32_t key_count,
+                                          const double *matrices) {
+  static const char nothing = 0;
+  return fill_scene(scene, &nothing, "motion",
+                    [&](Description &description) { move_instances(description, count, instances, key_count, matrices); });
+}
+
+lancer_status lancer_scene_set_motion(lancer_scene scene, const lancer_motion *motion) {
+  return fill_scene(scene, motion, "motion", [&](Description &description) { set_motion(description, *motion); });
 }
 
 lancer_status lancer_scene_add_object_attribute(lancer_scene scene, const char *name, uint32_t count, const float *values) {

@@ -39,7 +39,7 @@ Reference reference_sphere(const Ray &ray, const glm::dvec3 &centre, double radi
 }
 
 PlacedShape unit_shape(ShapeKind kind) {
-  PlacedShape shape{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 0}}, {}, 0x1p-46, kind, kNone, 0};
+  PlacedShape shape{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 0}}, {}, 0x1p-46, kind, kNone, 0, 0, 0};
   return shape;
 }
 

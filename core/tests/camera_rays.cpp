@@ -19,7 +19,8 @@ std::vector<Started> start(const Camera &camera, const IntegratorSettings &setti
                            const std::vector<SampleAddress> &addresses, std::vector<SampleResult> &results) {
   std::vector<Started> started;
   started.reserve(addresses.size());
-  CameraStage(camera, settings).start(addresses, false, results, [&](uint32_t slot, const Sampler &sampler) -> Ray & {
+  static const Motion still;
+  CameraStage(camera, still, settings).start(addresses, false, results, [&](uint32_t slot, const Sampler &sampler) -> Ray & {
     return started.emplace_back(Started{slot, sampler.pixel(), sampler.sample(), {}}).ray;
   });
   return started;

@@ -12,11 +12,19 @@ namespace lancer {
 struct Geometry {
   std::vector<Mesh> meshes;
   std::vector<Instance> instances;
+  std::vector<PlacementKey> keys; // of instances that move
 
+  // Lets an instance move.
+  void move(Instance &instance, const std::vector<Affine> &maps) {
+    const std::vector<PlacementKey> own = placement_keys(maps);
+    instance.first_key = uint32_t(keys.size());
+    instance.key_count = uint32_t(own.size());
+    keys.insert(keys.end(), own.begin(), own.end());
+  }
   // The view is valid until the geometry changes.
   operator GeometryView() const {
     views_.assign(meshes.begin(), meshes.end());
-    return {views_, instances, {}, {}};
+    return {views_, instances, {}, {}, keys};
   }
 
 private:
@@ -40,6 +48,7 @@ public:
     instances = description.instances;
     object_infos = description.object_infos;
     object_attributes = attributes_;
+    keys = description.keys;
   }
   DescribedGeometry(const DescribedGeometry &) = delete;
   DescribedGeometry &operator=(const DescribedGeometry &) = delete;

@@ -34,7 +34,7 @@ Shares shares_of(ShapeKind kind, double area) {
   for (int i = 0; i < kSide * kSide; ++i) {
     const glm::vec2 u((float(i % kSide) + 0.5f) / kSide, (float(i / kSide) + 0.5f) / kSide);
     Surface surface;
-    const LightSample sample = emitter.sample_shape(geometry, slots, p, u, surface);
+    const LightSample sample = emitter.sample_shape(geometry, slots, p, kMiddleTime, u, surface);
     const double cosine = std::abs(glm::dot(glm::dvec3(surface.ng), sample.wi));
     // Normals are floats: their rounding is a share of 6e-8 / cosine of it.
     EXPECT_NEAR(sample.pdf * area * cosine, sample.distance * sample.distance,

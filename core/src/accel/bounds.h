@@ -28,6 +28,10 @@ inline Float4 max4(Float4 a, Float4 b) { return a > b ? a : b; }
 // of the difference 2.74u; of the direction and its inverse 2 * 2.74u. The sum is 13.2u < 16u = 2^-20.
 inline constexpr float kBoxPad = 0x1p-20f;
 
+// Additional padding of a box whose sides move, as lo + time * (hi - lo) in float: the difference, the product and the sum
+// round numbers of at most 2, 2 and 1, by 5u in all.
+inline constexpr float kMovingPad = 0x1p-21f;
+
 // Lane 3 is free for the builder; it takes part in min and max, but its result has no meaning.
 struct Box {
   Float4 lo{kInf, kInf, kInf, kInf};

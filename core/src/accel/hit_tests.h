@@ -145,7 +145,7 @@ inline void try_triangle(const Ray &ray, const RayAxes &axes, const ShearedRay<d
     return;
   double corner[3][3];
   for (int i = 0; i < 3; ++i) {
-    const glm::vec3 p = mesh.vertex(triangle, i);
+    const glm::vec3 p = mesh.vertex(triangle, i, ray.time);
     corner[i][0] = p[static_cast<int>(axes.kx)];
     corner[i][1] = p[static_cast<int>(axes.ky)];
     corner[i][2] = p[static_cast<int>(axes.kz)];

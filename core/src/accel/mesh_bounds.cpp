@@ -35,6 +35,13 @@ MeshBounds find_bounds(const MeshView &mesh) {
   for (const glm::uvec3 &triangle : mesh.triangles)
     for (int corner = 0; corner < 3; ++corner)
       bounds.faces.grow(glm::dvec3(mesh.positions[triangle[corner]]));
+  if (mesh.key_count > 0)
+    bounds.keys = own_extents(mesh);
+  for (const Extent &key : bounds.keys)
+    if (!key.empty()) {
+      bounds.faces.grow(key.lo);
+      bounds.faces.grow(key.hi);
+    }
   return bounds;
 }
 

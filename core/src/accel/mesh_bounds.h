@@ -2,28 +2,16 @@
 #pragma once
 
 #include "scene/geometry.h"
+#include "scene/moving_bounds.h"
 
-#include <limits>
 #include <vector>
 
 namespace lancer {
 
-struct Extent {
-  glm::dvec3 lo{std::numeric_limits<double>::infinity()};
-  glm::dvec3 hi{-std::numeric_limits<double>::infinity()};
-
-  void grow(const glm::dvec3 &p) {
-    lo = glm::min(lo, p);
-    hi = glm::max(hi, p);
-  }
-  bool empty() const { return !(lo.x <= hi.x); }
-  glm::dvec3 middle() const { return 0.5 * lo + 0.5 * hi; }
-  glm::dvec3 half() const { return 0.5 * hi - 0.5 * lo; }
-};
-
 struct MeshBounds {
-  Extent faces;    // of the vertices of faces
-  Extent vertices; // of all vertices
+  Extent faces;             // of the vertices of faces, at all times
+  Extent vertices;          // of all vertices of the mesh as it stands
+  std::vector<Extent> keys; // of the vertices of faces, at the keys of a mesh that changes its shape
 };
 
 // The boxes of the vertices in the cells of a grid. The bounds of these boxes stay nearly tight when the mesh is rotated,

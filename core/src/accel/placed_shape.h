@@ -38,6 +38,7 @@ template <class D> LANCER_LANE D inverse_of_power(const D &power) {
 }
 
 enum class ShapeKind : uint32_t;
+struct PlacementKey;
 
 // The box frame of a mesh or of the whole scene: p_box = (p - centre) * scale. scale is a power of two that brings the largest
 // half extent into [0.5, 1], so that float boxes have the same relative error at every size and place.
@@ -52,8 +53,9 @@ struct alignas(32) PlacedShape {
   double slack;           // exact surfaces: bound on the distance by which rounding lifts a stored hit point off the surface,
                           // object space
   ShapeKind kind;
-  uint32_t mesh;        // kNone for exact surfaces
-  uint32_t hidden_from; // bits of Ray::kinds
+  uint32_t mesh;                 // kNone for exact surfaces
+  uint32_t hidden_from;          // bits of Ray::kinds
+  uint32_t first_key, key_count; // of GeometryView::keys; 0: the shape stands still
 };
 
 // Points are o + tau d; t = t0 + tau * unit is the parameter of the world ray. d is the object-space direction over a power of
@@ -137,6 +139,10 @@ LANCER_LANE bool enter_frame(const PlacementFrame &frame, const double (&o)[3], 
   ray.inverse_unit = entered.inverse_unit;
   return usable;
 }
+
+// Returns a shape as it is placed at the time of a ray: itself where it stands still, otherwise `moved`, which is filled. keys:
+// of the geometry.
+const PlacedShape &shape_at(const PlacedShape &shape, const PlacementKey *keys, float time, PlacedShape &moved);
 
 // Returns whether the shape is visible to the ray's kind.
 LANCER_LANE bool visible(const PlacedShape &shape, const Ray &ray) { return (ray.kinds & ~shape.hidden_from) != 0; }

@@ -34,6 +34,14 @@ PlaneRules plane_rules(const Scene &scene) {
   return rules;
 }
 
+Motion normalised(Motion motion, const Normalisation &normalisation) {
+  for (Camera &camera : motion.cameras)
+    camera.scale_lengths(normalisation.scale);
+  for (PlacementKey &place : motion.places)
+    place.translation = normalisation.to_normalised(place.translation);
+  return motion;
+}
+
 Environment make_environment(const Scene &scene, const BuildContext &context, const Scene *before) {
   const bool glass = scene.features & kFeatureGlass;
   if (before && before->world_owner == scene.world_owner && bool(before->features & kFeatureGlass) == glass)
@@ -101,6 +109,8 @@ std::shared_ptr<const Scene> commit(const Description &given, AcceleratorKind ki
   scene->placed = place_geometry(description, kind, context, before ? before->placed : nullptr);
   scene->geometry = scene->placed->view;
   scene->normalisation = scene->placed->normalisation;
+  if (description.motion)
+    scene->motion = normalised(*description.motion, scene->normalisation);
   scene->slots = std::move(description.slots);
   scene->transparent_instances =
       find_instances(*scene, [&](const Instance &, uint32_t material) { return scene->materials[material].is_transparent(); });

@@ -44,7 +44,7 @@ public:
     keep_positions();
     move_vertices();
     drop_flat_faces();
-    renew_normals(mesh_, renews_);
+    renew_all_normals();
     return std::make_shared<const Mesh>(std::move(mesh_));
   }
   const Messages &messages() const { return messages_; }
@@ -135,6 +135,31 @@ private:
     for (size_t i = 0; i < sums.size(); ++i)
       if (counts[i])
         mesh_.positions[i] = glm::vec3(glm::dvec3(mesh_.positions[i]) + sums[i] / double(counts[i]));
+    // As in Cycles, all keys are displaced as the mesh is in the middle.
+    for (size_t i = 0; i < mesh_.moved_positions.size(); ++i)
+      if (const size_t vertex = i % sums.size(); counts[vertex])
+        mesh_.moved_positions[i] = glm::vec3(glm::dvec3(mesh_.moved_positions[i]) + sums[vertex] / double(counts[vertex]));
+  }
+
+  // Recomputes the normals of the displaced faces, at all keys.
+  void renew_all_normals() {
+    renew_normals(mesh_, renews_);
+    if (mesh_.moved_normals.empty())
+      return;
+    Mesh at_key;
+    at_key.triangles = mesh_.triangles;
+    at_key.normal_domain = mesh_.normal_domain;
+    const size_t vertices = mesh_.positions.size(), normals = mesh_.moved_normals.size() / mesh_.key_count;
+    std::vector<glm::vec3> all;
+    for (uint32_t key = 0; key < mesh_.key_count; ++key) {
+      const auto position = mesh_.moved_positions.begin() + ptrdiff_t(key * vertices);
+      const auto normal = mesh_.moved_normals.begin() + ptrdiff_t(key * normals);
+      at_key.positions.assign(position, position + ptrdiff_t(vertices));
+      at_key.normals.assign(normal, normal + ptrdiff_t(normals));
+      renew_normals(at_key, renews_);
+      all.insert(all.end(), at_key.normals.begin(), at_key.normals.end());
+    }
+    mesh_.moved_normals = std::move(all);
   }
 
   // Drops the faces that displacement has collapsed: no ray can hit them.

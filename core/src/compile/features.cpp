@@ -180,6 +180,8 @@ Features find_features(const Description &description) {
       features.bits |= kFeatureVisibility;
     if (instance.holdout)
       features.bits |= kFeatureHoldout;
+    if (instance.key_count > 0 || (instance.kind == ShapeKind::Mesh && description.meshes[instance.mesh]->key_count > 0))
+      features.bits |= kFeatureMotion;
     if (instance.kind == ShapeKind::Mesh) {
       if (++uses[instance.mesh] > 1)
         features.bits |= kFeatureInstances;
@@ -211,7 +213,7 @@ std::string feature_names(const Features &features) {
                                      "cylinders",    "cones",     "point-lights", "spot-lights",     "sun-lights",
                                      "area-lights",  "emitters",  "environment",  "environment-map", "vertex-colors",
                                      "nodes",        "textures",  "displacement", "holdout",         "visibility",
-                                     "glass",        "portals",   "walks",        "mipmaps"};
+                                     "glass",        "portals",   "walks",        "mipmaps",         "motion"};
   static_assert(std::size(shapes) == kLobeShapes);
   std::string text;
   const auto add = [&](const char *name) {

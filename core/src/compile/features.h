@@ -34,6 +34,7 @@ enum Feature : uint32_t {
   kFeaturePortals = 1u << 21,    // some surface sends light on elsewhere
   kFeatureSubsurface = 1u << 22, // light enters some surface
   kFeatureMipmaps = 1u << 23,    // some node reads levels of an image
+  kFeatureMotion = 1u << 24,     // some object moves or changes its shape
 };
 
 struct Features {

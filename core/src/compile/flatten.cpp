@@ -54,11 +54,14 @@ void lay_mesh(Mesh &mesh, uint32_t number, const glm::dvec3 &axis, bool keeps_ge
       lay(std::span(mesh.attribute_values).subspan(attribute.first, mesh.count_of(attribute)), attribute.channels, axis);
   for (glm::vec3 &p : mesh.positions)
     p = glm::vec3(across(axis, glm::dvec3(p)));
+  for (glm::vec3 &p : mesh.moved_positions)
+    p = glm::vec3(across(axis, glm::dvec3(p)));
   // Cofactors map each normal to one side of the plane, or to 0, which selects the face's normal.
-  for (glm::vec3 &n : mesh.normals) {
-    const double side = glm::dot(axis, glm::dvec3(n));
-    n = side == 0.0 ? glm::vec3(0.0f) : glm::vec3(side < 0.0 ? -axis : axis);
-  }
+  for (std::vector<glm::vec3> *normals : {&mesh.normals, &mesh.moved_normals})
+    for (glm::vec3 &n : *normals) {
+      const double side = glm::dot(axis, glm::dvec3(n));
+      n = side == 0.0 ? glm::vec3(0.0f) : glm::vec3(side < 0.0 ? -axis : axis);
+    }
   std::vector<uint32_t> kept;
   for (uint32_t i = 0; i < mesh.triangles.size(); ++i)
     if (has_area(mesh.vertex(i, 0), mesh.vertex(i, 1), mesh.vertex(i, 2)))

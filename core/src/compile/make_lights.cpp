@@ -216,7 +216,8 @@ std::vector<Emitter> make_emitters(const GeometryView &geometry, std::span<const
       continue;
     }
     if (!user->faces)
-      user->faces = faces_of(geometry, slots, materials, instance, user->users > 1, emission, context, sources);
+      user->faces = faces_of(geometry, slots, materials, instance,
+                             user->users > 1 || geometry.moves(geometry.instances[instance]), emission, context, sources);
     if (!user->faces->empty())
       emitters.emplace_back(geometry, instance, user->faces);
   }

@@ -21,14 +21,28 @@ Extent world_bounds(const Description &description, const BuildContext &context)
   std::vector<std::shared_ptr<const MeshBounds>> meshes(description.meshes.size());
   parallel_for(context, meshes.size(),
                [&](size_t i) { meshes[i] = bounds_of(*description.meshes[i], description.meshes[i].object.get()); });
+  GeometryView moving;
+  moving.keys = description.keys;
+  const Extent unit{glm::dvec3(-1.0), glm::dvec3(1.0)};
   Extent world;
   for (const Instance &instance : description.instances) {
-    if (instance.kind == ShapeKind::Plane)
+    const MeshBounds *const bounds = instance.kind == ShapeKind::Mesh ? meshes[instance.mesh].get() : nullptr;
+    if (bounds && bounds->faces.empty())
+      continue;
+    if (instance.kind != ShapeKind::Plane && instance.key_count > 0)
+      for (const Extent &box : extents_over_time(moving, instance,
+                                                 !bounds                ? std::span(&unit, 1)
+                                                 : bounds->keys.empty() ? std::span(&bounds->faces, 1)
+                                                                        : std::span(bounds->keys))) {
+        world.grow(box.lo);
+        world.grow(box.hi);
+      }
+    else if (instance.kind == ShapeKind::Plane)
       world.grow(instance.to_world.translation);
     else if (instance.kind != ShapeKind::Mesh)
       add_box(world, instance.to_world, glm::dvec3(-1.0), glm::dvec3(1.0));
-    else if (const Extent &faces = meshes[instance.mesh]->faces; !faces.empty())
-      add_box(world, instance.to_world, faces.lo, faces.hi);
+    else
+      add_box(world, instance.to_world, bounds->faces.lo, bounds->faces.hi);
   }
   // Without geometry, the positions of the lights give the scene its size.
   if (world.empty())
@@ -86,9 +100,13 @@ bool same(const std::vector<Instance> &a, const std::vector<Instance> &b) {
   return std::ranges::equal(a, b, [](const Instance &x, const Instance &y) { return x.same(y); });
 }
 
+bool same(const std::vector<PlacementKey> &a, const std::vector<PlacementKey> &b) {
+  return a.size() == b.size() && same_bits(a.data(), b.data(), a.size() * sizeof(PlacementKey));
+}
+
 bool same(const PlacedGeometry &a, const PlacedGeometry &b) {
   const bool same_objects = same(a.object_infos, b.object_infos) && same(a.object_attributes, b.object_attributes);
-  const bool same_places = same(a.normalisation, b.normalisation) && same(a.instances, b.instances);
+  const bool same_places = same(a.normalisation, b.normalisation) && same(a.instances, b.instances) && same(a.keys, b.keys);
   return a.kind == b.kind && a.owners == b.owners && same_objects && same_places;
 }
 
@@ -112,6 +130,11 @@ std::shared_ptr<const PlacedGeometry> place_geometry(Description &description, A
     for (size_t i = piece * kPiece; i < end; ++i)
       placed->instances[i].place(placed->normalisation.to_normalised(placed->instances[i].to_world));
   });
+  placed->keys = std::move(description.keys);
+  for (PlacementKey &key : placed->keys) {
+    key.translation = placed->normalisation.to_normalised(key.translation);
+    key.stretch *= placed->normalisation.scale;
+  }
   placed->object_infos = std::move(description.object_infos);
   placed->object_attributes = std::move(description.object_attributes);
   if (before && same(*placed, *before))
@@ -124,13 +147,14 @@ std::shared_ptr<const PlacedGeometry> place_geometry(Description &description, A
       complete(*placed, instance);
     }
   placed->object_attribute_views = views_of(placed->object_attributes);
-  placed->view = {placed->meshes, placed->instances, placed->object_infos, placed->object_attribute_views};
+  placed->view = {placed->meshes, placed->instances, placed->object_infos, placed->object_attribute_views, placed->keys};
   placed->accelerator = build_accelerator(kind, placed->view, context, placed->owner_of);
   return placed;
 }
 
 size_t PlacedGeometry::bytes() const {
-  size_t bytes = instances.size() * sizeof(Instance) + object_infos.size() * sizeof(ObjectInfo);
+  size_t bytes =
+      instances.size() * sizeof(Instance) + keys.size() * sizeof(PlacementKey) + object_infos.size() * sizeof(ObjectInfo);
   for (const ObjectAttribute &attribute : object_attributes)
     bytes += attribute.values.size() * sizeof(glm::vec4);
   for (size_t i = 0; i < owners.size(); ++i)

@@ -17,6 +17,7 @@ struct PlacedGeometry {
   std::vector<std::shared_ptr<const void>> kept;   // smooth normals and centres of polygons
   std::vector<MeshView> meshes;
   std::vector<Instance> instances;
+  std::vector<PlacementKey> keys; // of instances that move
   std::vector<ObjectInfo> object_infos;
   std::vector<ObjectAttribute> object_attributes;
   std::vector<ObjectAttributeView> object_attribute_views;

@@ -44,6 +44,7 @@ struct Scene {
   LightSet lights;
   LampShaders lamp_shaders; // of lights.lamps()
   Normalisation normalisation;
+  Motion motion;         // of camera and shutter, in the normalised world
   uint32_t features = 0; // bits of features.h
   uint32_t shapes = 0;   // of lobes, as in Features
   std::shared_ptr<const Accelerator> accelerator;

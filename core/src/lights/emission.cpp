@@ -142,6 +142,15 @@ EmissiveFaces::EmissiveFaces(const GeometryView &geometry, std::span<const uint3
     for (glm::dvec3 &p : corners.p)
       p = (p - centre_) * scale_;
     lights.push_back(describe_triangle(corners.p, power[face], face));
+    if (mesh.key_count == 0)
+      continue;
+    // A face that changes its shape may be anywhere between its keys, and turned anywhere.
+    LightBounds bounds = lights.back().bounds;
+    for (uint32_t key = 0; key < mesh.key_count; ++key)
+      for (int i = 0; i < 3; ++i)
+        bounds.grow((glm::dvec3(mesh.key_vertex(face, i, key)) - centre_) * scale_);
+    bounds.cone.theta_o = glm::pi<double>();
+    lights.back() = describe_cluster(bounds, face);
   }
   tree_ = LightTree(std::move(lights), uint32_t(power.size()), context);
 }

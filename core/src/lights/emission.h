@@ -40,8 +40,8 @@ private:
 // The emitting faces of a mesh and the choice among them. Instances of one mesh with the same materials share this record.
 class EmissiveFaces {
 public:
-  // of_mesh: the tree is made in the object's space and serves all instances, with the emission that this instance has;
-  // otherwise it is made in world space. Throws BuildCancelled.
+  // of_mesh: the tree is made in the object's space and serves all instances at all times, with the emission that this instance
+  // has; otherwise it is made in world space. Throws BuildCancelled.
   EmissiveFaces(const GeometryView &geometry, std::span<const uint32_t> slots, std::span<const MaterialView> materials,
                 uint32_t instance, bool of_mesh, EmissionAt &emission, const BuildContext &context);
 
@@ -92,14 +92,16 @@ public:
   const std::shared_ptr<const EmissiveFaces> &faces() const { return faces_; }
 
   // Returns the probability with which a light sample at the point of the query chooses a face.
-  double face_probability(const GeometryView &geometry, const LightQuery &query, uint32_t face) const {
-    return faces_ ? faces_->probability(geometry.instances[instance_], query, face) : double(!empty());
+  double face_probability(const GeometryView &geometry, const LightQuery &query, float time, uint32_t face) const {
+    Instance moved;
+    return faces_ ? faces_->probability(geometry.placed_at(instance_, time, moved), query, face) : double(!empty());
   }
-  // Samples a point of an exact surface, seen from p, and writes it to surface. radiance stays 0: the caller evaluates the
-  // material at that point.
-  LightSample sample_shape(const GeometryView &geometry, std::span<const uint32_t> slots, const glm::dvec3 &p,
+  // Samples a point of an exact surface at a time, seen from p, and writes it to surface. radiance stays 0: the caller
+  // evaluates the material at that point.
+  LightSample sample_shape(const GeometryView &geometry, std::span<const uint32_t> slots, const glm::dvec3 &p, float time,
                            const glm::vec2 &u, Surface &surface) const;
-  // Returns the density per solid angle with which a light sample gives this surface point from p, once its face is chosen.
+  // Returns the density per solid angle with which a light sample at the surface's time gives this point from p, once its face
+  // is chosen.
   double face_pdf(const GeometryView &geometry, const glm::dvec3 &p, const Surface &surface) const;
   // The same for a face that is chosen by power alone.
   double pdf(const GeometryView &geometry, const glm::dvec3 &p, const Surface &surface) const;

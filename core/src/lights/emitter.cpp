@@ -4,6 +4,7 @@
 #include "sampling/elementary.h"
 #include "sampling/warp.h"
 #include "scene/geometry.h"
+#include "scene/moving_bounds.h"
 #include "scene/quadric_point.h"
 
 #include <cmath>
@@ -12,9 +13,10 @@ namespace lancer {
 
 namespace {
 
-SeenFace<float> see_face(const GeometryView &geometry, const Instance &instance, uint32_t face, const glm::dvec3 &p) {
+SeenFace<float> see_face(const GeometryView &geometry, const Instance &instance, uint32_t face, float time,
+                         const glm::dvec3 &p) {
   const MeshView &mesh = geometry.meshes[instance.mesh];
-  const Vector3<float> corner[3] = {mesh.vertex(face, 0), mesh.vertex(face, 1), mesh.vertex(face, 2)};
+  const Vector3<float> corner[3] = {mesh.vertex(face, 0, time), mesh.vertex(face, 1, time), mesh.vertex(face, 2, time)};
   return {MapLanes<float>(instance.to_world), corner, Vector3<double>(p)};
 }
 
@@ -60,10 +62,12 @@ double area_scale(const Instance &instance, const glm::dvec3 &n) {
 
 // Returns a point of an exact surface, hit at t = 1 by a ray along the normal, as the surface stage expects.
 Surface part_point(const GeometryView &geometry, std::span<const uint32_t> slots, uint32_t instance, int part,
-                   const glm::vec2 &u) {
-  const Instance &placed = geometry.instances[instance];
+                   const glm::vec2 &u, float time) {
+  Instance moved;
+  const Instance &placed = geometry.placed_at(instance, time, moved);
   const UnitPoint point = unit_point(placed.kind, part, u);
   Ray ray;
+  ray.time = time;
   ray.o = placed.to_world.point(point.p + point.n);
   ray.d = placed.to_world.vector(-point.n);
   Hit hit;
@@ -73,11 +77,23 @@ Surface part_point(const GeometryView &geometry, std::span<const uint32_t> slots
   return surface_at(geometry, slots, ray, hit);
 }
 
+// Extends bounds to all places of an object that moves, whose faces may then turn anywhere.
+void grow_along_motion(const GeometryView &geometry, uint32_t instance, LightBounds &bounds) {
+  if (!geometry.moves(geometry.instances[instance]))
+    return;
+  const Extent swept = swept_extent(geometry, geometry.instances[instance]);
+  bounds.grow(swept.lo);
+  bounds.grow(swept.hi);
+  bounds.cone.theta_o = glm::pi<double>();
+}
+
 } // namespace
 
 Emitter::Emitter(const GeometryView &geometry, uint32_t instance, std::shared_ptr<const EmissiveFaces> faces)
     : instance_(instance), hidden_from_(geometry.instances[instance].hidden_from),
-      bounds_(faces->bounds(geometry.instances[instance])), faces_(std::move(faces)) {}
+      bounds_(faces->bounds(geometry.instances[instance])), faces_(std::move(faces)) {
+  grow_along_motion(geometry, instance, bounds_);
+}
 
 Emitter::Emitter(const GeometryView &geometry, std::span<const uint32_t> slots, std::span<const MaterialView> materials,
                  uint32_t instance, EmissionAt &emission)
@@ -92,7 +108,7 @@ Emitter::Emitter(const GeometryView &geometry, std::span<const uint32_t> slots, 
     level = 0.0;
     for (int i = 0; i < 64; ++i) {
       const glm::vec2 u((float(i % 8) + 0.5f) / 8.0f, (float(i / 8) + 0.5f) / 8.0f);
-      level += emission.level(part_point(geometry, slots, instance_, 0, u)) / 64.0;
+      level += emission.level(part_point(geometry, slots, instance_, 0, u, kMiddleTime)) / 64.0;
     }
   }
   // Parts are weighted by their unit areas; the density accounts for the scale of the map.
@@ -103,6 +119,7 @@ Emitter::Emitter(const GeometryView &geometry, std::span<const uint32_t> slots, 
   // The box of the shape bounds the light, and the cone covers all directions.
   for (int corner = 0; corner < 8; ++corner)
     bounds_.grow(placed.to_world.point({corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0}));
+  grow_along_motion(geometry, instance_, bounds_);
   bounds_.cone = {{0.0, 0.0, 1.0}, glm::pi<double>(), glm::half_pi<double>()};
   bounds_.energy = level * part_area(placed.kind, 0) * mean_area_scale(placed.to_world.linear);
 }
@@ -113,9 +130,9 @@ double Emitter::pdf(const GeometryView &geometry, const glm::dvec3 &p, const Sur
 }
 
 LightSample Emitter::sample_shape(const GeometryView &geometry, std::span<const uint32_t> slots, const glm::dvec3 &p,
-                                  const glm::vec2 &u, Surface &surface) const {
+                                  float time, const glm::vec2 &u, Surface &surface) const {
   const auto part = parts_.sample(u.x);
-  surface = part_point(geometry, slots, instance_, int(part.index), {part.u, u.y});
+  surface = part_point(geometry, slots, instance_, int(part.index), {part.u, u.y}, time);
   LightSample sample;
   const glm::dvec3 v = surface.p - p;
   sample.distance = glm::length(v);
@@ -130,12 +147,13 @@ LightSample Emitter::sample_shape(const GeometryView &geometry, std::span<const 
 }
 
 double Emitter::face_pdf(const GeometryView &geometry, const glm::dvec3 &p, const Surface &surface) const {
-  const Instance &placed = geometry.instances[instance_];
   const glm::dvec3 v = surface.p - p;
   if (empty())
     return 0.0;
+  Instance moved;
+  const Instance &placed = geometry.placed_at(instance_, surface.time, moved);
   if (faces_)
-    return see_face(geometry, placed, surface.primitive, p).pdf(Vector3<double>(v), Vector3<float>(surface.ng));
+    return see_face(geometry, placed, surface.primitive, surface.time, p).pdf(Vector3<double>(v), Vector3<float>(surface.ng));
   const double d2 = glm::dot(v, v), cosine = std::abs(glm::dot(glm::dvec3(surface.ng), v)) / std::sqrt(d2);
   if (!(cosine > 0.0) || !(d2 > 0.0))
     return 0.0;

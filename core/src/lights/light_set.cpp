@@ -66,9 +66,9 @@ double LightSet::probability(const LightQuery &query, uint32_t light) const {
   return of_many > 0.0 ? of_many * binary_tree_.probability(query, uint32_t(size())) : binary_tree_.probability(query, light);
 }
 
-double LightSet::probability(const GeometryView &geometry, const LightQuery &query, const Emitter &emitter,
+double LightSet::probability(const GeometryView &geometry, const LightQuery &query, const Emitter &emitter, float time,
                              uint32_t face) const {
-  const double of_face = emitter.face_probability(geometry, query, face);
+  const double of_face = emitter.face_probability(geometry, query, time, face);
   return of_face > 0.0 ? of_face * probability(query, uint32_t(lamps_.size() + (&emitter - emitters_.data()))) : 0.0;
 }
 

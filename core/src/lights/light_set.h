@@ -39,9 +39,10 @@ public:
   const BinaryLightTree &binary_tree() const { return binary_tree_; }
   // In the binary tree, the light number size() represents all lights of wide_tree().
   const LightTree &wide_tree() const { return wide_tree_; }
-  // Return the probability with which the choice returns this light, or this face of an emitter.
+  // Return the probability with which the choice returns this light, or at a time this face of an emitter.
   double probability(const LightQuery &query, uint32_t light) const;
-  double probability(const GeometryView &geometry, const LightQuery &query, const Emitter &emitter, uint32_t face) const;
+  double probability(const GeometryView &geometry, const LightQuery &query, const Emitter &emitter, float time,
+                     uint32_t face) const;
 
   // Returns the emitter of an instance; null if the instance has none.
   const Emitter *emitter_of(uint32_t instance) const {

@@ -11,6 +11,7 @@ namespace lancer {
 
 struct Camera;
 struct GeometryView;
+struct Instance;
 struct Normalisation;
 struct NodeRays;
 
@@ -30,6 +31,12 @@ struct alignas(64) LookingLanes {
   uint32_t pixel[kBlockLanes], sample[kBlockLanes], dimension[kBlockLanes]; // of random numbers
 };
 
+// The time of each lane's ray, and its instance as it is placed then; null: as it stands.
+struct MovedLanes {
+  const Instance *instance[kBlockLanes] = {};
+  float time[kBlockLanes] = {};
+};
+
 // The inputs of nodes in lanes. The caller sets the used lanes of every array that the kind of place needs; other lanes are not
 // read as input.
 //
@@ -39,6 +46,7 @@ struct alignas(64) LookingLanes {
 struct alignas(64) NodeBlock {
   NodeScene scene;
   const LookingLanes *looking = nullptr; // null: nodes that look around meet nothing
+  const MovedLanes *moved = nullptr;     // null: everything stands still
   bool surface = true;
   uint32_t used = 0, backfacing = 0; // bits of lanes
 

@@ -153,7 +153,11 @@ template <class F> Site<F> site_of(const NodeBlock &block, int first) {
   for (int i = 0; i < width; ++i) {
     const int from = first + ((block.used >> (first + i) & 1) ? i : stand_in);
     site.primitive[i] = block.surface ? block.primitive[from] : 0;
+    site.number[i] = block.surface ? block.instance[from] : kNone;
     site.instance[i] = block.surface && block.scene.geometry ? &block.scene.geometry->instances[block.instance[from]] : nullptr;
+    if (block.surface && block.moved && block.moved->instance[from])
+      site.instance[i] = block.moved->instance[from];
+    site.time[i] = block.moved ? block.moved->time[from] : kMiddleTime;
     site.eye[i] = block.surface ? nullptr : block.eye[from];
   }
   site.place();

@@ -89,6 +89,7 @@ glm::vec3 bevelled_normal(const NodeRays &rays, const LookingPlace &at, double r
     const double r = radius * cubic_distance(double(u.y)), drawn = cubic_weight(radius, r);
     Ray ray;
     probe.place(at.surface.p, r, radius, ray.o, ray.d, ray.tmax);
+    ray.time = at.surface.time;
     // Weigh each point of the object on the way by its profile and by the densities of all axes.
     for (const Hit &hit : rays.all(ray, at.surface.instance)) {
       const Surface met = rays.surface(ray, hit);

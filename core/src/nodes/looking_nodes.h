@@ -25,7 +25,8 @@ template <class F, class Look> Vector3<F> look_from(const Site<F> &site, const L
     surface.p = glm::dvec3(lane(site.p.x, i), lane(site.p.y, i), lane(site.p.z, i));
     surface.ng = place.facing(lane_of<F>(site.ng, i));
     surface.ns = place.facing(lane_of<F>(site.ns, i));
-    surface.instance = uint32_t(site.instance[i] - site.scene.geometry->instances.data());
+    surface.instance = site.number[i];
+    surface.time = site.time[i];
     surface.primitive = site.primitive[i];
     surface.offset = of.offset[from];
     place.pixel = of.pixel[from];

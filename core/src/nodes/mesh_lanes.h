@@ -107,7 +107,10 @@ template <class F, class Read> LANCER_LANE void load_corners(const Site<F> &site
 template <class F> Vector3<F> interpolated_normal(const Site<F> &site) {
   Vector3<F> n[3];
   load_corners(
-      site, [&](int i, glm::vec3(&at)[3]) { corner_normals(*site.mesh[i], site.instance[i]->shading, site.primitive[i], at); },
+      site,
+      [&](int i, glm::vec3(&at)[3]) {
+        corner_normals(*site.mesh[i], site.instance[i]->shading, site.primitive[i], site.time[i], at);
+      },
       n);
   return interpolate(n[0], n[1], n[2], site.weights());
 }
@@ -121,7 +124,7 @@ template <class F> Edges<F> edges_of(const Site<F> &site) {
       [&](int i, glm::vec3(&at)[3]) {
         const MeshView &mesh = *site.mesh[i];
         for (int corner = 0; corner < 3; ++corner)
-          at[corner] = mesh.positions[(&mesh.triangles[site.primitive[i]].x)[corner]];
+          at[corner] = mesh.vertex(site.primitive[i], corner, site.time[i]);
       },
       v);
   const Vector3<DoubleOf<F>> v0 = widen(v[0]);

@@ -24,7 +24,8 @@ void free_values(void *values) { ::operator delete(values, kAlignment); }
 // The node machine at one hit.
 namespace {
 
-Site<float> site_of(const NodeContext &context) {
+// moved: receives the instance as it is placed at the time of the surface, if it moves.
+Site<float> site_of(const NodeContext &context, Instance &moved) {
   Site<float> site;
   site.scene = context;
   site.surface = context.surface != nullptr;
@@ -35,9 +36,11 @@ Site<float> site_of(const NodeContext &context) {
   site.path = context.path;
   if (!context.surface) {
     // For the world only the direction is defined; its surface faces the viewer.
+    site.number[0] = kNone;
     site.instance[0] = nullptr;
     site.place();
     site.primitive[0] = 0;
+    site.time[0] = kMiddleTime;
     site.p = glm::dvec3(-glm::dvec3(context.wo));
     site.bary[0] = site.bary[1] = 0.0;
     site.ns = site.ng = context.wo;
@@ -45,7 +48,9 @@ Site<float> site_of(const NodeContext &context) {
     return site;
   }
   const Surface &surface = *context.surface;
-  site.instance[0] = context.geometry ? &context.geometry->instances[surface.instance] : nullptr;
+  site.instance[0] = context.geometry ? &context.geometry->placed_at(surface.instance, surface.time, moved) : nullptr;
+  site.number[0] = surface.instance;
+  site.time[0] = surface.time;
   site.place();
   site.primitive[0] = surface.primitive;
   site.p = surface.p;
@@ -60,8 +65,9 @@ Site<float> site_of(const NodeContext &context) {
 } // namespace
 
 void run(const ProgramView &program, ScheduleView schedule, const NodeContext &context, std::span<glm::vec4> values) {
+  Instance moved;
   if (!schedule.empty())
-    run_nodes(program, schedule, site_of(context), Values<float>{glm::value_ptr(values.front()), 1});
+    run_nodes(program, schedule, site_of(context, moved), Values<float>{glm::value_ptr(values.front()), 1});
 }
 
 glm::mat3 rotation(const glm::vec3 &angles) {

@@ -75,9 +75,11 @@ template <class F> struct Site {
   bool in_height = false;                // a BUMP is evaluating its height
   bool displaces = false;                // a vertex is displaced, seen by nobody
   const Site *still = nullptr;           // then, the site of the bump itself
+  uint32_t number[kWidth];               // of the instance
   const Instance *instance[kWidth];
   const MeshView *mesh[kWidth]; // null on exact surfaces
   uint32_t primitive[kWidth];
+  float time[kWidth]; // of the ray
   const glm::dvec3 *eye[kWidth];
   M on_mesh;
   Vector3<D> p; // normalised world; for the world, the direction

@@ -207,7 +207,9 @@ constexpr uint64_t kProjectedEach = 8;
 } // namespace
 
 Background find_background(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const Film &film) {
-  if (settings.kind() != IntegratorKind::Path || settings.samples < kLeastPlanned || settings.all_features() ||
+  // Surfaces and the camera are projected as they stand.
+  const bool moves = scene.motion.shutter.opens() && ((scene.features & kFeatureMotion) || !scene.motion.cameras.empty());
+  if (settings.kind() != IntegratorKind::Path || settings.samples < kLeastPlanned || settings.all_features() || moves ||
       !has_even_background(scene, camera))
     return Background();
   Background background;

@@ -106,6 +106,8 @@ void probe_light(const Scene &scene, uint32_t light, uint32_t count, const doubl
   const double scale = scene.normalisation.scale;
   LightStage stage(scene, nullptr);
   Doubles p[3] = {};
+  Floats time;
+  std::fill_n(time, kBlockLanes, kMiddleTime);
   VertexNumbers numbers{};
   for (uint32_t first = 0; first < count; first += kBlockLanes) {
     const uint32_t lanes = std::min(uint32_t{kBlockLanes}, count - first);
@@ -114,7 +116,7 @@ void probe_light(const Scene &scene, uint32_t light, uint32_t count, const doubl
       for (uint32_t k = 0; k < 2; ++k)
         numbers.of[kVertexLight + k][lane] = u[2 * (first + lane) + k];
     }
-    stage.sample(light, (1u << lanes) - 1u, p, numbers);
+    stage.sample(light, (1u << lanes) - 1u, p, time, numbers);
     const LightSamples &found = stage.samples();
     for (uint32_t lane = 0; lane < lanes; ++lane) {
       lancer_light_sample &sample = samples[first + lane];

@@ -6,6 +6,7 @@
 #include "scene/light.h"
 #include "scene/material.h"
 #include "scene/messages.h"
+#include "scene/shutter.h"
 
 #include <memory>
 #include <string>
@@ -35,7 +36,9 @@ struct Description {
   std::vector<Given<LightDescription>> lights;
   std::vector<Given<Image>> images;
   Given<World> world;
-  uint32_t instances_given = 0; // including those left out
+  uint32_t instances_given = 0;         // including those left out
+  std::vector<PlacementKey> keys;       // of instances that move
+  std::shared_ptr<const Motion> motion; // of the camera and the shutter; null: everything is seen at the middle time
   Messages instance_messages;
   Messages made_messages; // about the parts that commit() makes
 

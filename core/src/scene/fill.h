@@ -16,6 +16,12 @@ inline std::string to_text(float value) {
   return text;
 }
 
+// Whether a map can place a shape without a stand-in: finite, invertible, of a size that the tracer can bear.
+bool is_placement(const Affine &map);
+
+// Throws an Error for a number of keys that motion cannot have.
+void check_key_count(const std::string &object, uint32_t key_count);
+
 inline void check_rays(const std::string &object, uint32_t hidden_from) {
   if (hidden_from >= 2 * LANCER_RAY_RAYCAST)
     bad_argument(object + ": hidden_from " + std::to_string(hidden_from) + " has bits beyond the last kind of ray");
@@ -40,6 +46,9 @@ World read_world(const lancer_world &source, Images images);
 void add_mesh(Description &description, const lancer_mesh &mesh);
 void add_instances(Description &description, uint32_t count, const lancer_instance *instances, uint32_t slot_count,
                    const uint32_t *slots, const char *names, size_t names_size);
+void move_instances(Description &description, uint32_t count, const uint32_t *instances, uint32_t key_count,
+                    const double *matrices);
+void set_motion(Description &description, const lancer_motion &motion);
 void set_object_infos(Description &description, uint32_t count, const float *infos);
 void add_object_attribute(Description &description, const char *name, uint32_t count, const float *values);
 void add_material(Description &description, const lancer_material &material);

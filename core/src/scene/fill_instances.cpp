@@ -51,6 +51,15 @@ Placement placement_of(const Affine &map, uint32_t kind) {
   return {map, glm::dvec3(0.0), ""};
 }
 
+} // namespace
+
+bool is_placement(const Affine &map) {
+  const Placement placement = placement_of(map, LANCER_MESH);
+  return placement.fault.empty() && placement.flat_axis == glm::dvec3(0.0);
+}
+
+namespace {
+
 void check_instance(const Description &description, const std::string &object, const lancer_instance &given,
                     uint32_t slot_count) {
   if (given.kind > LANCER_CONE)

@@ -21,20 +21,33 @@ void check_indices(const std::string &object, const lancer_mesh &mesh) {
   }
 }
 
+// Returns whether a face has corners at all keys that can be hit, and an area at some of them.
+bool can_be_hit(const Mesh &mesh, uint32_t face, size_t &not_finite, size_t &flat) {
+  const uint32_t shapes = mesh.key_count + 1;
+  bool area = false;
+  for (uint32_t shape = 0; shape < shapes; ++shape) {
+    glm::vec3 p[3];
+    for (int corner = 0; corner < 3; ++corner)
+      p[corner] = shape == 0 ? mesh.vertex(face, corner)
+                             : mesh.moved_positions[size_t(shape - 1) * mesh.positions.size() + mesh.triangles[face][corner]];
+    if (!is_usable(p[0]) || !is_usable(p[1]) || !is_usable(p[2])) {
+      ++not_finite;
+      return false;
+    }
+    area = area || has_area(p[0], p[1], p[2]);
+  }
+  flat += !area;
+  return area;
+}
+
 // Returns the faces that can be hit: finite corners, and an area that is not zero in double.
 std::vector<uint32_t> kept_faces(const std::string &object, const Mesh &mesh, Messages &messages) {
   std::vector<uint32_t> kept;
   kept.reserve(mesh.triangles.size());
   size_t not_finite = 0, flat = 0;
-  for (uint32_t face = 0; face < mesh.triangles.size(); ++face) {
-    const glm::vec3 a = mesh.vertex(face, 0), b = mesh.vertex(face, 1), c = mesh.vertex(face, 2);
-    if (!is_usable(a) || !is_usable(b) || !is_usable(c))
-      ++not_finite;
-    else if (!has_area(a, b, c))
-      ++flat;
-    else
+  for (uint32_t face = 0; face < mesh.triangles.size(); ++face)
+    if (can_be_hit(mesh, face, not_finite, flat))
       kept.push_back(face);
-  }
   if (not_finite)
     messages.add(object, std::to_string(not_finite) + " faces with vertices that are not finite were left out");
   if (flat)
@@ -60,12 +73,13 @@ void copy_normals(const lancer_mesh &source, Mesh &mesh) {
 // Replaces normals that are not finite by zero, which means the geometric normal.
 void check_normals(const std::string &object, Mesh &mesh, Messages &messages) {
   size_t replaced = 0;
-  for (glm::vec3 &n : mesh.normals) {
-    if (!finite(n)) {
-      n = glm::vec3(0.0f);
-      ++replaced;
+  for (std::vector<glm::vec3> *normals : {&mesh.normals, &mesh.moved_normals})
+    for (glm::vec3 &n : *normals) {
+      if (!finite(n)) {
+        n = glm::vec3(0.0f);
+        ++replaced;
+      }
     }
-  }
   if (replaced)
     messages.add(object, std::to_string(replaced) + " normals that are not finite were replaced by geometric ones");
 }
@@ -153,6 +167,11 @@ Mesh read_mesh(const lancer_mesh &source, size_t number, Messages &messages) {
   check_indices(object, source);
   check_polygons(object, source);
   check_attributes(object, source);
+  if (source.key_count > 0) {
+    check_key_count(object, source.key_count);
+    if (source.vertex_count && !source.moved_positions)
+      bad_argument(object + ": moved_positions is NULL for " + std::to_string(source.key_count) + " keys");
+  }
 
   // Copy the mesh, then drop the faces that cannot be hit.
   Mesh mesh;
@@ -161,6 +180,9 @@ Mesh read_mesh(const lancer_mesh &source, size_t number, Messages &messages) {
   const auto *triangles = reinterpret_cast<const glm::uvec3 *>(source.triangles);
   mesh.triangles.assign(triangles, triangles + source.triangle_count);
   copy_normals(source, mesh);
+  mesh.key_count = source.key_count;
+  copy(source.moved_positions, size_t(source.vertex_count) * source.key_count, mesh.moved_positions);
+  copy(source.moved_normals, mesh.normals.size() * source.key_count, mesh.moved_normals);
   copy(source.uvs, size_t(source.triangle_count) * 3, mesh.uvs);
   copy(source.colors, size_t(source.triangle_count) * 3, mesh.colors);
   if (source.material_slots)

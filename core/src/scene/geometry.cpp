@@ -39,6 +39,18 @@ template <class Entry> void retain(std::vector<Entry> &entries, size_t width, co
   entries.resize(kept.size() * width);
 }
 
+// The same for entries of keys, each of which has `count` of them.
+template <class Entry>
+void retain_keys(std::vector<Entry> &entries, size_t count, size_t width, const std::vector<uint32_t> &kept) {
+  std::vector<Entry> all;
+  for (size_t first = 0; first < entries.size(); first += count) {
+    std::vector<Entry> of_key(entries.begin() + ptrdiff_t(first), entries.begin() + ptrdiff_t(first + count));
+    retain(of_key, width, kept);
+    all.insert(all.end(), of_key.begin(), of_key.end());
+  }
+  entries = std::move(all);
+}
+
 } // namespace
 
 bool is_usable(const glm::vec3 &vertex) {
@@ -56,7 +68,8 @@ bool Instance::same(const Instance &other) const {
   return bits(to_world, other.to_world) && bits(to_object, other.to_object) && bits(reach, other.reach) && kind == other.kind &&
          shading == other.shading && mesh == other.mesh && first_slot == other.first_slot && slot_count == other.slot_count &&
          object_index == other.object_index && hidden_from == other.hidden_from && holdout == other.holdout &&
-         bits(terminator, other.terminator) && number == other.number && bits(flat_axis, other.flat_axis);
+         bits(terminator, other.terminator) && number == other.number && bits(flat_axis, other.flat_axis) &&
+         first_key == other.first_key && key_count == other.key_count;
 }
 
 MeshAttribute &Mesh::add_attribute(uint32_t attribute, Domain domain, uint32_t channels) {
@@ -85,14 +98,17 @@ Mesh::operator MeshView() const {
           .high = high,
           .normal_domain = normal_domain,
           .smooth_normals = {},
-          .centers = {}};
+          .centers = {},
+          .moved_positions = moved_positions,
+          .moved_normals = moved_normals,
+          .key_count = key_count};
 }
 
 size_t Mesh::bytes() const {
-  return positions.size() * sizeof(glm::vec3) + triangles.size() * sizeof(glm::uvec3) +
-         (normals.size() + colors.size()) * sizeof(glm::vec3) + uvs.size() * sizeof(glm::vec2) +
-         material_slots.size() * sizeof(uint16_t) + (face_of.size() + polygons.size()) * sizeof(uint32_t) +
-         attribute_values.size() * sizeof(float);
+  return (positions.size() + moved_positions.size() + moved_normals.size()) * sizeof(glm::vec3) +
+         triangles.size() * sizeof(glm::uvec3) + (normals.size() + colors.size()) * sizeof(glm::vec3) +
+         uvs.size() * sizeof(glm::vec2) + material_slots.size() * sizeof(uint16_t) +
+         (face_of.size() + polygons.size()) * sizeof(uint32_t) + attribute_values.size() * sizeof(float);
 }
 
 std::vector<ObjectAttributeView> views_of(std::span<const ObjectAttribute> attributes) {
@@ -113,8 +129,10 @@ void keep_faces(Mesh &mesh, const std::vector<uint32_t> &kept) {
   }
   retain(mesh.face_of, 1, kept);
   retain(mesh.triangles, 1, kept);
-  if (mesh.normal_domain == NormalDomain::Corner)
+  if (mesh.normal_domain == NormalDomain::Corner) {
+    retain_keys(mesh.moved_normals, mesh.normals.size(), 3, kept);
     retain(mesh.normals, 3, kept);
+  }
   retain(mesh.uvs, 3, kept);
   retain(mesh.colors, 3, kept);
   retain(mesh.material_slots, 1, kept);

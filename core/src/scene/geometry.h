@@ -3,6 +3,7 @@
 #pragma once
 
 #include "scene/affine.h"
+#include "scene/motion.h"
 #include "scene/once.h"
 
 #include <cstdint>
@@ -50,8 +51,24 @@ struct MeshView {
   std::span<const glm::vec3>
       smooth_normals;                     // per vertex; only if an instance with PHONG or GOURAUD uses a mesh without normals
   std::span<const PolygonCenter> centers; // by polygon; only if an instance with FLAT uses a mesh with polygons
+  std::span<const glm::vec3> moved_positions, moved_normals; // key after key; as positions and normals
+  uint32_t key_count = 0;                                    // 0: the mesh keeps its shape
 
   glm::vec3 vertex(uint32_t triangle, int corner) const { return positions[triangles[triangle][corner]]; }
+  // Returns a corner at a time.
+  glm::vec3 vertex(uint32_t triangle, int corner, float time) const {
+    return key_count == 0 ? vertex(triangle, corner) : moved(moved_positions, triangles[triangle][corner], time);
+  }
+  // Returns a corner at a key.
+  glm::vec3 key_vertex(uint32_t triangle, int corner, uint32_t key) const {
+    return moved_positions[size_t(key) * positions.size() + triangles[triangle][corner]];
+  }
+  // Returns an entry of moved_positions or moved_normals at a time.
+  glm::vec3 moved(std::span<const glm::vec3> of_keys, size_t number, float time) const {
+    const KeyPlace at = key_at(key_count, time);
+    const size_t count = of_keys.size() / key_count, first = at.key * count + number;
+    return between_keys(of_keys[first], of_keys[first + count], at.share);
+  }
 };
 
 struct MeshBounds; // accel/mesh_bounds.h
@@ -71,8 +88,10 @@ struct Mesh {
   std::vector<uint16_t> material_slots; // empty (all 0), or per triangle
   std::vector<uint32_t> polygons;       // empty (each triangle is a polygon), or the polygon of each triangle
   std::vector<MeshAttribute> attributes;
-  std::vector<float> attribute_values; // of all attributes
-  glm::vec3 low{-1.0f}, high{1.0f};    // bounds of the given positions
+  std::vector<float> attribute_values;                   // of all attributes
+  std::vector<glm::vec3> moved_positions, moved_normals; // key after key: as positions, and as normals or empty
+  uint32_t key_count = 0;                                // 0: the mesh keeps its shape
+  glm::vec3 low{-1.0f}, high{1.0f};                      // bounds of the given positions
   NormalDomain normal_domain = NormalDomain::None;
 
   // Made when a scene first needs them.
@@ -119,9 +138,10 @@ struct Instance {
   uint32_t object_index = 0;
   uint32_t hidden_from = 0; // RayKind bits
   bool holdout = false;
-  float terminator = 0.0f;   // of smooth meshes: cosine below which shadow rays start on the curved surface
-  uint32_t number = 0;       // in the user's order of adding
-  glm::dvec3 flat_axis{0.0}; // object space, unit: the direction that a flattening placement loses; else 0
+  float terminator = 0.0f;               // of smooth meshes: cosine below which shadow rays start on the curved surface
+  uint32_t number = 0;                   // in the user's order of adding
+  glm::dvec3 flat_axis{0.0};             // object space, unit: the direction that a flattening placement loses; else 0
+  uint32_t first_key = 0, key_count = 0; // of the geometry's keys; 0: the instance stands still
 
   // Places the shape; the map must be invertible.
   void place(const Affine &map);
@@ -156,6 +176,24 @@ struct GeometryView {
   std::span<const Instance> instances;
   std::span<const ObjectInfo> object_infos; // by Instance::number; missing entries have the default
   std::span<const ObjectAttributeView> object_attributes;
+  std::span<const PlacementKey> keys = {}; // of all instances that move
+
+  std::span<const PlacementKey> keys_of(const Instance &instance) const {
+    return keys.subspan(instance.first_key, instance.key_count);
+  }
+  // Whether a shape has another place or form at another time.
+  bool moves(const Instance &instance) const {
+    return instance.key_count > 0 || (instance.kind == ShapeKind::Mesh && meshes[instance.mesh].key_count > 0);
+  }
+  // Returns an instance as it is placed at a time: itself where it stands still, otherwise `moved`, which is filled.
+  const Instance &placed_at(uint32_t number, float time, Instance &moved) const {
+    const Instance &instance = instances[number];
+    if (instance.key_count == 0)
+      return instance;
+    moved = instance;
+    moved.place(placement_at(keys_of(instance), time));
+    return moved;
+  }
 };
 
 // Selection of the faces of a mesh that can be traced.

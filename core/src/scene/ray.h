@@ -25,6 +25,8 @@ struct Ray {
   // Bits of RayKind: the kind of the ray. A ray passes an object that is hidden from all of its kinds as if the object did
   // not exist.
   uint32_t kinds = ~0u;
+  // When the ray meets things that move: see scene/motion.h.
+  float time = 0.5f;
 };
 
 // primitive: index into Mesh::triangles; 0 for exact surfaces.

@@ -20,7 +20,7 @@ template <class Vector> Vector interpolate_corners(std::span<const Vector> corne
 
 } // namespace
 
-bool corner_normals(const MeshView &mesh, Shading shading, uint32_t triangle, glm::vec3 (&n)[3]) {
+bool corner_normals(const MeshView &mesh, Shading shading, uint32_t triangle, float time, glm::vec3 (&n)[3]) {
   if (shading == Shading::Flat)
     return false;
   const bool smooth = mesh.normal_domain == NormalDomain::None && shading != Shading::AsMesh;
@@ -28,14 +28,17 @@ bool corner_normals(const MeshView &mesh, Shading shading, uint32_t triangle, gl
   if (normals.empty())
     return false;
   const bool corners = mesh.normal_domain == NormalDomain::Corner;
-  for (int i = 0; i < 3; ++i)
-    n[i] = normals[corners ? size_t(triangle) * 3 + size_t(i) : mesh.triangles[triangle][i]];
+  const bool moves = !smooth && !mesh.moved_normals.empty();
+  for (int i = 0; i < 3; ++i) {
+    const size_t number = corners ? size_t(triangle) * 3 + size_t(i) : mesh.triangles[triangle][i];
+    n[i] = moves ? mesh.moved(mesh.moved_normals, number, time) : normals[number];
+  }
   return true;
 }
 
 glm::vec3 interpolated_normal(const MeshView &mesh, Shading shading, uint32_t triangle, const glm::dvec2 &bary) {
   glm::vec3 n[3];
-  if (!corner_normals(mesh, shading, triangle, n))
+  if (!corner_normals(mesh, shading, triangle, kMiddleTime, n))
     return glm::vec3(0.0f);
   const Vector3<float> weights(float(1.0 - bary.x - bary.y), float(bary.x), float(bary.y));
   return interpolate<float>(n[0], n[1], n[2], weights);
@@ -44,7 +47,8 @@ glm::vec3 interpolated_normal(const MeshView &mesh, Shading shading, uint32_t tr
 namespace {
 
 SurfaceLanes<float> surface_of(const GeometryView &geometry, const Ray &ray, const Hit &hit) {
-  const Instance &instance = geometry.instances[hit.instance];
+  Instance moved;
+  const Instance &instance = geometry.placed_at(hit.instance, ray.time, moved);
   const double *const placement = instance.placement();
   const Placements<float> placed(&placement);
   if (instance.kind != ShapeKind::Mesh)
@@ -52,9 +56,9 @@ SurfaceLanes<float> surface_of(const GeometryView &geometry, const Ray &ray, con
   const MeshView &mesh = geometry.meshes[instance.mesh];
   Vector3<float> v[3], normals[3];
   glm::vec3 n[3] = {};
-  const bool smooth = corner_normals(mesh, instance.shading, hit.primitive, n);
+  const bool smooth = corner_normals(mesh, instance.shading, hit.primitive, ray.time, n);
   for (int corner = 0; corner < 3; ++corner) {
-    v[corner] = mesh.vertex(hit.primitive, corner);
+    v[corner] = mesh.vertex(hit.primitive, corner, ray.time);
     normals[corner] = n[corner];
   }
   return triangle_surface(placed, v, normals, smooth, hit.u, hit.v);
@@ -82,6 +86,7 @@ Surface surface_at(const GeometryView &geometry, std::span<const uint32_t> slots
   surface.offset = found.offset;
   surface.ng = found.ng;
   surface.ns = found.ns;
+  surface.time = ray.time;
   if (geometry.instances[hit.instance].kind == ShapeKind::Mesh)
     surface.bary = {hit.u, hit.v};
   return surface;
@@ -89,7 +94,8 @@ Surface surface_at(const GeometryView &geometry, std::span<const uint32_t> slots
 
 SurfaceAttributes attributes_at(const GeometryView &geometry, const Surface &surface) {
   SurfaceAttributes attributes;
-  const Instance &instance = geometry.instances[surface.instance];
+  Instance moved;
+  const Instance &instance = geometry.placed_at(surface.instance, surface.time, moved);
   if (instance.kind != ShapeKind::Mesh) {
     attributes.uv = nearest_float(quadric_uv(instance.kind, instance.to_object.point(surface.p)));
     return attributes;
@@ -110,6 +116,7 @@ Ray ray_from(const Surface &surface, const glm::dvec3 &d, double tmax) {
   ray.tmax = tmax;
   ray.skip_instance = surface.instance;
   ray.skip_primitive = surface.primitive;
+  ray.time = surface.time;
   return ray;
 }
 

@@ -16,9 +16,10 @@ struct Surface {
   uint32_t instance = kNone;
   uint32_t primitive = kNone;
   uint32_t material = kNone;
+  float time = kMiddleTime; // of the ray that has hit it
 };
 
-// Returns the surface at the hit of a ray. slots: material numbers of all instances.
+// Returns the surface at the hit of a ray, at the time of the ray. slots: material numbers of all instances.
 Surface surface_at(const GeometryView &geometry, std::span<const uint32_t> slots, const Ray &ray, const Hit &hit);
 
 // Attributes of the surface, computed separately because few callers need them.
@@ -29,8 +30,8 @@ struct SurfaceAttributes {
 SurfaceAttributes attributes_at(const GeometryView &geometry, const Surface &surface);
 
 // Reads the normals at a triangle's corners in object space, of any length; returns false if the triangle is flat.
-bool corner_normals(const MeshView &mesh, Shading shading, uint32_t triangle, glm::vec3 (&n)[3]);
-// Returns the interpolated normal; 0 if the surface is flat. bary: see Surface::bary.
+bool corner_normals(const MeshView &mesh, Shading shading, uint32_t triangle, float time, glm::vec3 (&n)[3]);
+// Returns the interpolated normal of a mesh that keeps its shape; 0 if the surface is flat. bary: see Surface::bary.
 glm::vec3 interpolated_normal(const MeshView &mesh, Shading shading, uint32_t triangle, const glm::dvec2 &bary);
 
 // Returns a ray that leaves the surface towards d (need not be unit): it starts on the side of d and does not hit its own
@@ -73,13 +74,15 @@ bool corner_uvs(const MeshView &mesh, const MeshAttribute *attribute, uint32_t n
 glm::vec2 uv_at(const MeshView &mesh, uint32_t name, uint32_t triangle, const glm::dvec2 &bary);
 
 // Fills a ray that leaves the surface of a hit from an origin off the surface. The ray is written in place.
-inline void write_ray(const Hit &hit, const glm::dvec3 &o, const glm::dvec3 &d, double tmax, uint32_t kinds, Ray &ray) {
+inline void write_ray(const Hit &hit, const glm::dvec3 &o, const glm::dvec3 &d, double tmax, uint32_t kinds, float time,
+                      Ray &ray) {
   ray.o = o;
   ray.d = d;
   ray.tmax = tmax;
   ray.skip_instance = hit.instance;
   ray.skip_primitive = hit.primitive;
   ray.kinds = kinds;
+  ray.time = time;
 }
 
 } // namespace lancer

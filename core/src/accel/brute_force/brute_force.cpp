@@ -29,9 +29,10 @@ private:
     if (!enter_world(scene.world, ray, world_ray))
       return best;
     for (uint32_t instance = 0; instance < scene.shapes.size(); ++instance) {
-      const PlacedShape &shape = scene.shapes[instance];
-      if (!visible(shape, ray))
+      if (!visible(scene.shapes[instance], ray))
         continue;
+      PlacedShape moved;
+      const PlacedShape &shape = shape_at(scene.shapes[instance], geometry.keys.data(), ray.time, moved);
       if (shape.mesh == kNone) {
         try_quadric(ray, shape, instance, counting, best);
         continue;

@@ -3,6 +3,7 @@
 
 #include "accel/bounds.h"
 #include "accel/placed_shape.h"
+#include "scene/motion.h"
 #include "scene/ray.h"
 #include "simd/processor.h"
 
@@ -43,6 +44,13 @@ struct alignas(64) BvhNode {
   uint32_t order[8];
 };
 
+// A node of a tree in which something moves: bounds at time 0, and how far they go until time 1.
+struct alignas(64) BvhMovingNode {
+  float bounds[3][2][kBvhWidth], way[3][2][kBvhWidth];
+  uint32_t child[kBvhWidth];
+  uint32_t order[8]; // as in BvhNode
+};
+
 // Four triangles, corner by corner. Unused lanes are NaN, which no ray hits.
 struct alignas(32) TriangleBlock {
   float corner[3][3][4]; // corner, axis, lane
@@ -56,8 +64,9 @@ struct alignas(32) SphereBlock {
 };
 
 struct BvhView {
-  const BvhNode *nodes; // root first; null for an empty tree
+  const void *nodes; // BvhNode, or BvhMovingNode where key_count is not 0; root first; null for an empty tree
   const TriangleBlock *blocks;
+  uint32_t key_count, block_count; // of a mesh that changes its shape: its blocks at each key, one key after the other
 };
 
 // The data that a traversal reads.
@@ -65,13 +74,15 @@ struct BvhScene {
   PlacementFrame world;
   const PlacedShape *shapes;
   const BvhView *meshes;
-  // The tree of the world: over instances, and over the triangles of unfolded instances (see bvh_accelerator.cpp).
-  const BvhNode *top;
+  // The tree of the world: over instances, and over the triangles of unfolded instances (see bvh_accelerator.cpp). For the
+  // kernels of scenes in which something moves, of BvhMovingNode.
+  const void *top;
   const TriangleBlock *blocks;
   const uint32_t *block_instance;
   const SphereBlock *spheres;
   const uint32_t *unbounded;
   uint32_t unbounded_count;
+  const PlacementKey *keys; // of the geometry
 };
 
 struct BvhKernel {
@@ -87,6 +98,8 @@ struct BvhKernel {
 
 // Each is bvh_kernel.cpp compiled with LANCER_ISA set to the name.
 LANCER_DECLARE_KERNEL(BvhKernel, bvh_kernel)
+// The same for scenes in which something moves: moving_bvh_kernel.cpp.
+LANCER_DECLARE_KERNEL(BvhKernel, moving_bvh_kernel)
 
 // The part of a split that visits every box, one copy per instruction set; the wider registers make a build a tenth faster.
 

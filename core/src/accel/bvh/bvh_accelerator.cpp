@@ -12,29 +12,33 @@
 namespace lancer {
 
 const BvhKernel &bvh_kernel() { return LANCER_CHOSEN_KERNEL(bvh_kernel); }
+const BvhKernel &moving_bvh_kernel() { return LANCER_CHOSEN_KERNEL(moving_bvh_kernel); }
 
 namespace {
 
 class BvhAccelerator final : public Accelerator {
 public:
   BvhAccelerator(const GeometryView &geometry, const BuildContext &context, MeshOwners owners)
-      : kernel(bvh_kernel()), placed(place_scene(geometry, owners)), meshes(geometry.meshes.size()) {
+      : moves(something_moves(geometry)), kernel(moves ? moving_bvh_kernel() : bvh_kernel()),
+        placed(place_scene(geometry, owners)), meshes(geometry.meshes.size()) {
     const std::vector<uint8_t> unfolded = choose_unfolded(geometry);
     build_meshes(geometry, unfolded, context, owners);
-    world = build_world_bvh(geometry, placed, unfolded, context);
+    world = build_world_bvh(geometry, placed, unfolded, moves, context);
     release(placed.boxes);
+    release(placed.moving);
 
     for (const auto &mesh : meshes)
       views.push_back(mesh ? mesh->view() : BvhView{});
     scene = {.world = placed.world,
              .shapes = placed.shapes.data(),
              .meshes = views.data(),
-             .top = world.view().nodes,
+             .top = world.root(),
              .blocks = world.blocks.data(),
              .block_instance = world.owners.data(),
              .spheres = world.spheres.data(),
              .unbounded = placed.unbounded.data(),
-             .unbounded_count = static_cast<uint32_t>(placed.unbounded.size())};
+             .unbounded_count = static_cast<uint32_t>(placed.unbounded.size()),
+             .keys = geometry.keys.data()};
   }
   BvhAccelerator(const BvhAccelerator &) = delete;
   BvhAccelerator &operator=(const BvhAccelerator &) = delete;
@@ -81,7 +85,7 @@ private:
     for (size_t i = 0; i < placed.bounded.size(); ++i) {
       const uint32_t number = placed.bounded[i];
       const Instance &instance = geometry.instances[number];
-      if (instance.kind != ShapeKind::Mesh)
+      if (instance.kind != ShapeKind::Mesh || geometry.moves(instance))
         continue;
       // Boxes in the world's frame are padded by kBoxPad. Unfold only meshes whose triangles are larger than the padding.
       const size_t count = geometry.meshes[instance.mesh].triangles.size();
@@ -142,6 +146,11 @@ private:
     });
   }
 
+  static bool something_moves(const GeometryView &geometry) {
+    return std::ranges::any_of(geometry.instances, [&](const Instance &instance) { return geometry.moves(instance); });
+  }
+
+  const bool moves;
   const BvhKernel &kernel;
   PlacedScene placed;
   std::vector<std::shared_ptr<const MeshBvh>> meshes; // null: no instance enters it

@@ -72,14 +72,20 @@ WideTree build_wide_tree(HugeVector<BuildRef> refs, uint32_t group, const BuildC
 // A tree whose leaves are blocks of triangles; the world's tree also has blocks of spheres and instances as leaves.
 struct MeshBvh {
   HugeVector<BvhNode> nodes;
-  HugeVector<TriangleBlock> blocks;
-  HugeVector<uint32_t> owners; // of blocks; empty if all blocks have the same owner
+  HugeVector<BvhMovingNode> moving_nodes; // in place of nodes, where something in the tree moves
+  HugeVector<TriangleBlock> blocks;       // of a mesh that changes its shape, key after key
+  HugeVector<uint32_t> owners;            // of blocks; empty if all blocks have the same owner
   HugeVector<SphereBlock> spheres;
+  uint32_t key_count = 0; // of the mesh
 
-  BvhView view() const { return {nodes.empty() ? nullptr : nodes.data(), blocks.data()}; }
+  const void *root() const {
+    return !moving_nodes.empty() ? static_cast<const void *>(moving_nodes.data()) : nodes.empty() ? nullptr : nodes.data();
+  }
+  BvhView view() const { return {root(), blocks.data(), key_count, key_count ? uint32_t(blocks.size() / key_count) : 0}; }
   size_t bytes() const {
-    return nodes.capacity() * sizeof(BvhNode) + blocks.capacity() * sizeof(TriangleBlock) +
-           owners.capacity() * sizeof(uint32_t) + spheres.capacity() * sizeof(SphereBlock);
+    return nodes.capacity() * sizeof(BvhNode) + moving_nodes.capacity() * sizeof(BvhMovingNode) +
+           blocks.capacity() * sizeof(TriangleBlock) + owners.capacity() * sizeof(uint32_t) +
+           spheres.capacity() * sizeof(SphereBlock);
   }
 };
 
@@ -93,8 +99,8 @@ std::shared_ptr<const MeshBvh> tree_of(const MeshView &mesh, const Mesh *owner, 
                                        const BuildContext &context);
 
 // Builds the tree of the world. unfolded: instances whose triangles are part of this tree; all other bounded instances are
-// leaves.
+// leaves. moves: something in the scene moves, so that nodes are moving ones.
 MeshBvh build_world_bvh(const GeometryView &geometry, const PlacedScene &placed, const std::vector<uint8_t> &unfolded,
-                        const BuildContext &context);
+                        bool moves, const BuildContext &context);
 
 } // namespace lancer

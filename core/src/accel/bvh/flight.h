@@ -15,6 +15,7 @@ struct Question {
   bool any = false;      // any hit ends the query, not only the closest
   bool filtered = false; // a filter may reject hits
   bool counted = false;  // count the work
+  bool moving = false;   // something in the scene moves
 };
 
 // Returns whether the filter rejects a hit.
@@ -58,6 +59,11 @@ struct alignas(64) Flight {
   uint32_t unbounded; // number of unbounded instances still to test
   uint32_t number;    // of the ray in its batch
   bool usable;        // whether the ray can hit the instance
+  // Of queries in which something moves: whether the current tree has moving nodes; of the current mesh, the bytes from a block
+  // to that of the next key, and the share of the way to it.
+  bool tree_moves;
+  size_t key_step;
+  float key_share, time;
   double tmin, tmax;
   Hit best;
   MeshRay ray;

@@ -1,7 +1,8 @@
-#include "accel/bvh/bvh_build.h"
+#include "accel/bvh/moving_nodes.h"
 
 #include "simd/parallel.h"
 
+#include <algorithm>
 #include <limits>
 #include <new>
 
@@ -31,12 +32,28 @@ SphereBlock sphere_block(const PlacedShape *shapes, const LeafRef *refs, uint32_
   return block;
 }
 
-// Converts the leaves of a finished tree to blocks.
+// Returns the block of a leaf at a key.
+TriangleBlock key_block(const MeshView &mesh, const LeafRef *leaf, uint32_t used, uint32_t key) {
+  TriangleBlock block;
+  for (uint32_t lane = 0; lane < 4; ++lane) {
+    block.primitive[lane] = lane < used ? leaf[lane].id : kNone;
+    for (int corner = 0; corner < 3; ++corner) {
+      const glm::vec3 p =
+          lane < used ? mesh.key_vertex(leaf[lane].id, corner, key) : glm::vec3(std::numeric_limits<float>::quiet_NaN());
+      for (int axis = 0; axis < 3; ++axis)
+        block.corner[corner][axis][lane] = p[axis];
+    }
+  }
+  return block;
+}
+
+// Converts the leaves of a finished tree to blocks. key_count: of the one mesh that changes its shape.
 template <class MeshOf>
 MeshBvh gather_blocks(WideTree tree, uint32_t kind, bool owned, const MeshOf &mesh_of, const PlacedShape *shapes,
-                      const BuildContext &context) {
+                      const BuildContext &context, uint32_t key_count = 0) {
   // Number the blocks in the order of their nodes.
   MeshBvh bvh;
+  bvh.key_count = key_count;
   std::vector<uint32_t> firsts, sphere_leaves;
   for (BvhNode &node : tree.nodes)
     for (uint32_t &child : node.child) {
@@ -73,7 +90,7 @@ MeshBvh gather_blocks(WideTree tree, uint32_t kind, bool owned, const MeshOf &me
           __builtin_prefetch(&mesh.positions[triangle[corner]]);
     }
   };
-  bvh.blocks.resize(firsts.size());
+  bvh.blocks.resize(firsts.size() * std::max(key_count, 1u));
   bvh.owners.resize(owned ? firsts.size() : 0);
   parallel_for(context, (firsts.size() + kPiece - 1) / kPiece, [&](size_t piece) {
     const size_t begin = piece * kPiece;
@@ -96,6 +113,8 @@ MeshBvh gather_blocks(WideTree tree, uint32_t kind, bool owned, const MeshOf &me
             block.corner[corner][axis][lane] = p[axis];
         }
       }
+      for (uint32_t key = 0; key < key_count; ++key)
+        bvh.blocks[key * firsts.size() + b] = key_block(mesh, &tree.leaves[first], used, key);
     }
   });
   bvh.spheres.resize(sphere_leaves.size());
@@ -124,8 +143,21 @@ MeshBvh build_mesh_bvh(const MeshView &mesh, const PlacementFrame &frame, const 
   add_triangles(
       refs, 0, count, 0, [&](uint32_t i) { return triangle_box(mesh, frame, i); }, context);
   WideTree tree = build_wide_tree(std::move(refs), kBvhLeafSize, context);
-  return gather_blocks(
-      std::move(tree), kBvhTriangles, false, [&](uint32_t) -> const MeshView & { return mesh; }, nullptr, context);
+  MeshBvh bvh = gather_blocks(
+      std::move(tree), kBvhTriangles, false, [&](uint32_t) -> const MeshView & { return mesh; }, nullptr, context,
+      mesh.key_count);
+  if (mesh.key_count == 0)
+    return bvh;
+  // The tree divides the mesh as it stands in the middle; its boxes hold the triangles at all times.
+  const auto box_of = [&](uint32_t child, const Box &) {
+    const TriangleBlock &block = bvh.blocks[(child & kBvhPlace) / kBvhSteps<TriangleBlock>];
+    MovingBox box;
+    for (int lane = 0; lane < 4 && block.primitive[lane] != kNone; ++lane)
+      box.grow(moving_triangle_box(mesh, frame, block.primitive[lane]));
+    return box;
+  };
+  MovingNodes(bvh, box_of);
+  return bvh;
 }
 
 std::shared_ptr<const MeshBvh> tree_of(const MeshView &mesh, const Mesh *owner, const PlacementFrame &frame,
@@ -138,7 +170,7 @@ std::shared_ptr<const MeshBvh> tree_of(const MeshView &mesh, const Mesh *owner, 
 }
 
 MeshBvh build_world_bvh(const GeometryView &geometry, const PlacedScene &placed, const std::vector<uint8_t> &unfolded,
-                        const BuildContext &context) {
+                        bool moves, const BuildContext &context) {
   const auto mesh_of = [&](uint32_t instance) -> const MeshView & {
     return geometry.meshes[geometry.instances[instance].mesh];
   };
@@ -148,11 +180,16 @@ MeshBvh build_world_bvh(const GeometryView &geometry, const PlacedScene &placed,
   HugeVector<BuildRef> refs(count);
   size_t filled = 0;
   bool groups = false;
+  std::vector<uint32_t> number_of(placed.moving.empty() ? 0 : geometry.instances.size()); // in placed.moving
   for (size_t i = 0; i < placed.bounded.size(); ++i) {
     const uint32_t number = placed.bounded[i];
+    if (!number_of.empty())
+      number_of[number] = uint32_t(i);
     if (!unfolded[number]) {
-      const bool sphere = geometry.instances[number].kind == ShapeKind::Sphere;
-      refs[filled++] = BuildRef(placed.boxes[i], number, sphere ? kSpheres : kWholeInstance);
+      const Instance &instance = geometry.instances[number];
+      const bool sphere = instance.kind == ShapeKind::Sphere && instance.key_count == 0;
+      const Box box = placed.moving.empty() ? placed.boxes[i] : placed.moving[i].middle();
+      refs[filled++] = BuildRef(box, number, sphere ? kSpheres : kWholeInstance);
       groups |= sphere;
       continue;
     }
@@ -165,7 +202,16 @@ MeshBvh build_world_bvh(const GeometryView &geometry, const PlacedScene &placed,
     groups = true;
   }
   WideTree tree = build_wide_tree(std::move(refs), groups ? kBvhLeafSize : 1, context);
-  return gather_blocks(std::move(tree), kBvhPlaced, true, mesh_of, placed.shapes.data(), context);
+  MeshBvh bvh = gather_blocks(std::move(tree), kBvhPlaced, true, mesh_of, placed.shapes.data(), context);
+  if (!moves)
+    return bvh;
+  const auto box_of = [&](uint32_t child, const Box &still) {
+    if (child >> kBvhKindShift != kBvhInstance || placed.moving.empty())
+      return MovingBox{{still, still}};
+    return placed.moving[number_of[(child & kBvhPlace) / kBvhSteps<PlacedShape>]];
+  };
+  MovingNodes(bvh, box_of);
+  return bvh;
 }
 
 } // namespace lancer

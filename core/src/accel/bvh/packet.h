@@ -230,7 +230,7 @@ LANCER_LANE void walk_mesh(const BvhView &bvh, const PacketAsks &asks, uint32_t 
     for (uint32_t i = 0; i < kPacket; ++i)
       entry[i] = same >> i & 1 ? p.inner.tau_min[i] : __builtin_nanf("");
     walk(
-        bvh.nodes, octant, entry, p.inner, p,
+        static_cast<const BvhNode *>(bvh.nodes), octant, entry, p.inner, p,
         arrays, [&](uint32_t child, uint32_t lanes, const float *) __attribute__((always_inline)) {
           if (child >> kBvhKindShift == kBvhInner)
             return false;
@@ -271,7 +271,7 @@ template <Question q>
     for (uint32_t axis = 0; axis < 3; ++axis)
       octant |= uint32_t{e.inverse[axis][0] < 0.0f} << axis;
     walk(
-        scene.top, octant, e.tau_min, e, p,
+        static_cast<const BvhNode *>(scene.top), octant, e.tau_min, e, p,
         arrays, [&](uint32_t child, uint32_t active, const float *entry) __attribute__((always_inline)) {
           const uint32_t kind = child >> kBvhKindShift;
           if ((kind == kBvhInner || kind == kBvhInstance) && __builtin_popcount(active) <= static_cast<int>(kFew) &&

@@ -127,7 +127,8 @@ private:
     for (const bool neighbours : {true, false})
       for (uint32_t i = 0; i < count && found.faces.size() < budget; ++i) {
         const Instance &instance = geometry.instances[i];
-        if (met[i] != neighbours || instance.kind == ShapeKind::Sphere)
+        // The planes of a shape that moves have no order: they coincide with others at single times.
+        if (met[i] != neighbours || instance.kind == ShapeKind::Sphere || geometry.moves(instance))
           continue;
         poll_cancel(context);
         if (instance.kind == ShapeKind::Cylinder || instance.kind == ShapeKind::Cone) {
@@ -176,6 +177,8 @@ private:
 
 size_t faces_of(const GeometryView &geometry, uint32_t instance) {
   const Instance &placed = geometry.instances[instance];
+  if (geometry.moves(placed))
+    return 0;
   if (placed.kind == ShapeKind::Mesh)
     return geometry.meshes[placed.mesh].triangles.size();
   return placed.kind == ShapeKind::Sphere ? 0 : 1;

@@ -24,7 +24,8 @@ public:
         std::vector<Box> boxes;
         boxes.reserve(mesh.triangles.size());
         for (uint32_t i = 0; i < mesh.triangles.size(); ++i)
-          boxes.push_back(triangle_box(mesh, placed.mesh_frames[m], i));
+          boxes.push_back(mesh.key_count ? moving_triangle_box(mesh, placed.mesh_frames[m], i).swept()
+                                         : triangle_box(mesh, placed.mesh_frames[m], i));
         return build_kdtree(boxes, kTriangleCost, context);
       }));
     }
@@ -67,9 +68,10 @@ private:
 
   // Returns true if the search may end.
   template <bool any> bool intersect_instance(const Ray &ray, uint32_t instance, const Counting &counting, Hit &best) const {
-    const PlacedShape &shape = placed.shapes[instance];
-    if (!visible(shape, ray))
+    if (!visible(placed.shapes[instance], ray))
       return false;
+    PlacedShape moved;
+    const PlacedShape &shape = shape_at(placed.shapes[instance], geometry.keys.data(), ray.time, moved);
     if (shape.mesh == kNone) {
       try_quadric(ray, shape, instance, counting, best);
       return any && best.valid();

@@ -15,8 +15,8 @@ namespace lancer {
 class NormalsIntegrator final : public Integrator {
 public:
   NormalsIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
-      : scene_(scene), camera_(camera), settings_(settings), generator_(camera, settings), surfaces_(scene, camera, settings),
-        queues_(scene), passes_(settings), sky_values_(scene.world.program.value_count()) {}
+      : scene_(scene), camera_(camera), settings_(settings), generator_(camera, scene.motion, settings),
+        surfaces_(scene, camera, settings), queues_(scene), passes_(settings), sky_values_(scene.world.program.value_count()) {}
 
   void run(std::span<const SampleAddress> addresses, std::span<SampleResult> results, std::vector<PathVertex> *trace) override {
     rays_.clear();

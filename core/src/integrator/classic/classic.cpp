@@ -37,7 +37,7 @@ glm::vec3 ambient_light(const Scene &scene, const Camera &camera) {
 } // namespace
 
 ClassicIntegrator::ClassicIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
-    : scene_(scene), camera_(camera), settings_(settings), generator_(camera, settings), light_(scene, &camera),
+    : scene_(scene), camera_(camera), settings_(settings), generator_(camera, scene.motion, settings), light_(scene, &camera),
       shadows_(scene, camera, settings), passes_(settings), queues_(scene), surfaces_(scene, camera, settings),
       kernel_(classic_kernel()), ambient_(ambient_light(scene, camera)), only_combined_(settings.passes == bit(Pass::Combined)),
       sky_values_(scene.world.program.value_count()) {}
@@ -143,7 +143,7 @@ void ClassicIntegrator::gather(size_t number, SampleResult &result, std::vector<
 void ClassicIntegrator::trace_vertex(size_t number, const SampleResult &result, std::vector<PathVertex> &trace) const {
   const Hit &hit = hits_[number];
   const Surface met = surface_at(scene_.geometry, scene_.slots, rays_[number], hit);
-  const glm::vec3 ns = is_flat(scene_.geometry.instances[hit.instance]) ? surface_at_center(scene_, hit).ns : met.ns;
+  const glm::vec3 ns = is_flat(scene_.geometry.instances[hit.instance]) ? surface_at_center(scene_, hit, met.time).ns : met.ns;
   trace.push_back({scene_.normalisation.to_world(met.p), hit.t / scene_.normalisation.scale, ns, branches_[number].weight,
                    result.radiance, met.instance, met.primitive, met.material, branches_[number].depth});
 }
@@ -215,6 +215,7 @@ void ClassicIntegrator::spawn(Branch child, const Vertex &vertex, const glm::vec
   ray.skip_instance = vertex.instance;
   ray.skip_primitive = vertex.primitive;
   ray.kinds = kind;
+  ray.time = vertex.time;
 }
 
 void ClassicIntegrator::push(const Branch &branch, Ray ray) {
@@ -223,10 +224,13 @@ void ClassicIntegrator::push(const Branch &branch, Ray ray) {
   next_rays_.push_back(ray);
 }
 
-Surface surface_at_center(const Scene &scene, const Hit &hit) {
-  const Instance &instance = scene.geometry.instances[hit.instance];
+Surface surface_at_center(const Scene &scene, const Hit &hit, float time) {
+  Instance moved;
+  const Instance &instance = scene.geometry.placed_at(hit.instance, time, moved);
   const MeshView &mesh = scene.geometry.meshes[instance.mesh];
-  Surface surface = surface_at(scene.geometry, scene.slots, Ray{}, center_hit(mesh, hit));
+  Ray ray;
+  ray.time = time;
+  Surface surface = surface_at(scene.geometry, scene.slots, ray, center_hit(mesh, hit));
   if (mesh.centers.empty())
     return surface;
   const glm::vec3 normal = carried_normal(instance.to_object, glm::dvec3(mesh.centers[mesh.polygons[hit.primitive]].normal));

@@ -86,7 +86,8 @@ private:
 inline bool is_flat(const Instance &instance) { return instance.kind == ShapeKind::Mesh && instance.shading == Shading::Flat; }
 
 // Returns the surface at the centre of the hit polygon, with the polygon's normal. The instance must satisfy is_flat().
-Surface surface_at_center(const Scene &scene, const Hit &hit);
+// time: of the ray.
+Surface surface_at_center(const Scene &scene, const Hit &hit, float time);
 
 class ClassicIntegrator final : public Integrator {
 public:
@@ -115,6 +116,7 @@ private:
     uint32_t instance = kNone, primitive = kNone;
     glm::dvec3 p{0.0}; // shaded place; members as in Surface
     double offset = 0.0;
+    float time = kMiddleTime;
     glm::vec3 ng{0.0f};
     glm::vec3 emission{0.0f}, ambient{0.0f}, transmittance{0.0f}; // ambient: Ka
     glm::vec3 reflected{0.0f}, refracted{0.0f}, mirrored{0.0f}, through{0.0f};

@@ -48,7 +48,7 @@ void ClassicIntegrator::put_in_lane(size_t number, const MaterialView &material,
     Hit &center = lit_at_[surfaces_.count()];
     center = center_hit(scene_.geometry.meshes[instance.mesh], hit);
     const uint32_t lane = surfaces_.add(ray, center, material);
-    const Surface surface = surface_at_center(scene_, hit);
+    const Surface surface = surface_at_center(scene_, hit, ray.time);
     surfaces_.replace(lane, surface, view_of(branches_[number], ray, surface.p));
     put_number(lane, number, material);
     return;
@@ -135,6 +135,7 @@ void ClassicIntegrator::store_vertex(uint32_t lane) {
   vertex.primitive = hit.primitive;
   vertex.p = get(surfaces_.surfaces().p, lane);
   vertex.offset = surfaces_.surfaces().offset[lane];
+  vertex.time = surfaces_.surfaces().time[lane];
   vertex.ng = get(surfaces_.surfaces().ng, lane);
   vertex.emission = surfaces_.emission(lane);
   // A hole has no light of its own.
@@ -168,7 +169,7 @@ void ClassicIntegrator::sample(uint32_t number, const Doubles (&p)[3], const Flo
       numbers_.of[kVertexLight][lane] = u.x;
       numbers_.of[kVertexLight + 1][lane] = u.y;
     });
-  light_.sample(number, asking, surfaces_.surfaces().p, numbers_);
+  light_.sample(number, asking, surfaces_.surfaces().p, surfaces_.surfaces().time, numbers_);
 }
 
 // Computes the light of the samples at the places of the lanes.

@@ -25,9 +25,9 @@ class PathIntegrator final : public Integrator {
 public:
   PathIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
       : scene_(scene), settings_(settings), spread_at_eye_(camera), width_at_eye_(PixelCone(camera).base),
-        camera_(camera, settings), film_(scene, camera, settings), hit_(scene, camera), met_(scene, camera), queues_(scene),
-        textures_(scene), surface_(scene, camera, settings), light_(scene, &camera), occlusion_(scene, settings),
-        shadow_(scene, camera, settings), last_bounces_(settings.max_bounces) {
+        camera_(camera, scene.motion, settings), film_(scene, camera, settings), hit_(scene, camera), met_(scene, camera),
+        queues_(scene), textures_(scene), surface_(scene, camera, settings), light_(scene, &camera),
+        occlusion_(scene, settings), shadow_(scene, camera, settings), last_bounces_(settings.max_bounces) {
     if (std::ranges::any_of(scene.materials, [](const MaterialView &material) { return material.program.looks_around; }))
       surface_.look_by(node_rays_.emplace(scene).functions());
     if (scene.features & kFeatureSubsurface) {

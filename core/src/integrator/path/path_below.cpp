@@ -33,6 +33,7 @@ void PathIntegrator::enter(uint32_t lane, uint32_t branch) {
   walk.ray.d = glm::dvec3(get(block.wi, lane));
   walk.ray.skip_instance = hit.instance;
   walk.ray.skip_primitive = hit.primitive;
+  walk.ray.time = surface_.surfaces().time[lane];
   walk.n = walk.method == SubsurfaceMethod::Burley ? ng : get(surface_.lobes().ns, lane);
   walk.from_behind = glm::dot(outwards, ng) < 0.0f;
   walk.beta = beta / largest(beta);

@@ -174,7 +174,7 @@ void PathIntegrator::scatter(uint32_t lane, uint32_t branch) {
   film_.set_shares(path, next, block.share, lane);
   next_.from.push_back({get(surface_.surfaces().p, lane), get(surface_.lobes().ns, lane),
                         (surface_.lobes().transmits >> lane & 1) != 0, block.pdf[lane], 0.0});
-  scatter_.write_ray(lane, surface_.hit(lane), next.kinds, next_.rays.emplace_back());
+  scatter_.write_ray(lane, surface_.hit(lane), next.kinds, surface_.surfaces().time[lane], next_.rays.emplace_back());
 }
 
 // Appends a copy of a lane's path, which is a branch where the lane splits.

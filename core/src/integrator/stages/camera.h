@@ -35,7 +35,8 @@ LANCER_DECLARE_KERNEL(CameraKernel, camera_kernel)
 
 class CameraStage {
 public:
-  CameraStage(const Camera &camera, const IntegratorSettings &settings);
+  // motion: of the camera and the shutter; must outlive the stage.
+  CameraStage(const Camera &camera, const Motion &motion, const IntegratorSettings &settings);
 
   // Whether rays go through the middle of the pixel and of the lens: in a picture of one sample by CLASSIC or NORMALS.
   bool middle() const { return middle_; }
@@ -59,6 +60,7 @@ public:
         ray.d = {rays_.d[0][lane], rays_.d[1][lane], rays_.d[2][lane]};
         ray.tmax = camera_.clip_end;
         ray.kinds = RayKind::Camera;
+        ray.time = times_[lane];
       }
     }
   }
@@ -67,14 +69,18 @@ private:
   // Fills the blocks. Returns the lanes that have a direction.
   uint32_t aim(std::span<const SampleAddress> addresses);
   bool aim_alone(const SampleAddress &address, uint32_t lane);
+  // Returns the time of a sample.
+  float time_of(const SampleAddress &address) const;
 
   const Camera &camera_;
+  const Motion &motion_;
   PixelFilter filter_;
   uint32_t seed_;
   bool middle_, plain_; // plain: kernels support the camera
   const CameraKernel &kernel_;
   AddressBlock addresses_{};
   CameraBlock rays_{};
+  Floats times_{}; // by lane
 };
 
 } // namespace lancer

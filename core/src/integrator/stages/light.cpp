@@ -17,7 +17,8 @@ LightQuery query_of(const SurfaceBlock &surfaces, const LobeBlock &lobes, uint32
 
 LightStage::LightStage(const Scene &scene, const Camera *camera)
     : scene_(scene), kernel_(light_kernel()), emission_(scene.node_scene(camera), scene.materials), sky_(scene, camera),
-      lamp_nodes_(scene, camera), has_lamp_shaders_(!scene.lamp_shaders.empty()) {}
+      lamp_nodes_(scene, camera), has_lamp_shaders_(!scene.lamp_shaders.empty()),
+      placed_(scene.features & kFeatureMotion ? kBlockLanes : 0) {}
 
 // Clears the samples of all lanes.
 void LightStage::begin() {
@@ -82,15 +83,14 @@ void LightStage::choose_faces(const SurfaceBlock &surfaces, const LobeBlock &lob
   for (uint32_t lanes = emitters_; lanes != 0;) {
     const uint32_t light = choices_.number[std::countr_zero(lanes)];
     LightWalk walks[kBlockLanes];
-    uint32_t of[kBlockLanes], count = 0;
+    uint32_t of[kBlockLanes] = {}, count = 0;
     for (uint32_t rest = lanes; rest != 0; rest &= rest - 1)
       if (const uint32_t lane = uint32_t(std::countr_zero(rest)); choices_.number[lane] == light)
         of[count++] = lane;
     const Emitter &emitter = emitter_of(of[0]);
     if (emitter.faces()) {
-      const Instance &placed = scene_.geometry.instances[emitter.instance()];
       for (uint32_t i = 0; i < count; ++i)
-        walks[i] = emitter.faces()->walk(placed, query_of(surfaces, lobes, of[i]), choices_.rest[of[i]]);
+        walks[i] = emitter.faces()->walk(placed(of[i]), query_of(surfaces, lobes, of[i]), choices_.rest[of[i]]);
       emitter.faces()->choose({walks, count});
     }
     for (uint32_t i = 0; i < count; ++i) {
@@ -104,7 +104,9 @@ void LightStage::choose_faces(const SurfaceBlock &surfaces, const LobeBlock &lob
   }
 }
 
-void LightStage::sample(uint32_t light, uint32_t lanes, const Doubles (&p)[3], const VertexNumbers &numbers) {
+void LightStage::sample(uint32_t light, uint32_t lanes, const Doubles (&p)[3], const Floats &time,
+                        const VertexNumbers &numbers) {
+  time_ = time;
   begin();
   const LightSet &lights = scene_.lights;
   std::fill_n(choices_.number, kBlockLanes, light);
@@ -157,14 +159,14 @@ void LightStage::sample_faces(const Doubles (&p)[3]) {
     const Emitter &emitter = emitter_of(lane);
     if (!emitter.faces())
       continue;
-    const Instance &placed = scene_.geometry.instances[emitter.instance()];
-    const MeshView &mesh = scene_.geometry.meshes[placed.mesh];
+    const Instance &object = placed(lane);
+    const MeshView &mesh = scene_.geometry.meshes[object.mesh];
     if (faces_.used == 0)
-      std::fill_n(faces_.placement, kBlockLanes, placed.placement());
+      std::fill_n(faces_.placement, kBlockLanes, object.placement());
     faces_.used |= 1u << lane;
-    faces_.placement[lane] = placed.placement();
+    faces_.placement[lane] = object.placement();
     for (int corner = 0; corner < 3; ++corner)
-      put(mesh.vertex(face_[lane], corner), faces_.corner[corner], lane);
+      put(mesh.vertex(face_[lane], corner, time_[lane]), faces_.corner[corner], lane);
   }
   if (faces_.used == 0)
     return;
@@ -185,7 +187,9 @@ glm::vec3 LightStage::face_emission(uint32_t lane, LightPath<float> path) {
   hit.primitive = face_[lane];
   hit.u = faces_.weights[0][lane];
   hit.v = faces_.weights[1][lane];
-  const Surface surface = surface_at(scene_.geometry, scene_.slots, Ray{}, hit);
+  Ray ray;
+  ray.time = time_[lane];
+  const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hit);
   reach(path, glm::length(surface.p - get(faces_.p, lane)));
   return emission_(surface, glm::vec3(-get(faces_.wi, lane)), path);
 }
@@ -204,8 +208,9 @@ void LightStage::store_face(uint32_t lane, const glm::vec3 &radiance) {
 void LightStage::sample_shape(uint32_t lane, const Doubles (&p)[3], const VertexNumbers &numbers, LightPath<float> path) {
   const glm::dvec3 from = get(p, lane);
   Surface surface;
-  const LightSample light = emitter_of(lane).sample_shape(
-      scene_.geometry, scene_.slots, from, {numbers.of[kVertexLight][lane], numbers.of[kVertexLight + 1][lane]}, surface);
+  const LightSample light =
+      emitter_of(lane).sample_shape(scene_.geometry, scene_.slots, from, time_[lane],
+                                    {numbers.of[kVertexLight][lane], numbers.of[kVertexLight + 1][lane]}, surface);
   if (!(light.pdf > 0.0))
     return;
   reach(path, glm::length(surface.p - from));

@@ -140,6 +140,7 @@ public:
   // Chooses a light for each of these lanes and samples it. path(lane): returns the Light Path of a light sample at the vertex.
   template <class PathOf>
   void ask(uint32_t lanes, const SurfaceBlock &surfaces, const LobeBlock &lobes, const VertexNumbers &numbers, PathOf &&path) {
+    time_ = surfaces.time;
     choose(lanes, surfaces, lobes, numbers);
     if (lamps_ != 0)
       kernel_.sample_lamps(lamp_, surfaces.p, numbers, choices_.probability, lamps_, samples_);
@@ -161,8 +162,9 @@ public:
     sample_sky(numbers, lobes.transmits);
     weigh_from_behind(lobes);
   }
-  // Samples this light in all of these lanes, seen from p; an emitter's face by its power. The nodes of the light see no path.
-  void sample(uint32_t light, uint32_t lanes, const Doubles (&p)[3], const VertexNumbers &numbers);
+  // Samples this light in all of these lanes, seen from p at these times; an emitter's face by its power. The nodes of the
+  // light see no path.
+  void sample(uint32_t light, uint32_t lanes, const Doubles (&p)[3], const Floats &time, const VertexNumbers &numbers);
   // Computes the light of the samples that is not occluded.
   void light(const LitVertices &vertices) { kernel_.light(vertices, samples_, lit_); }
 
@@ -205,6 +207,12 @@ private:
     each_lane(shaded,
               [&](uint32_t lane) { put(get(samples_.radiance, lane) * lamp_nodes_.strength(lane), samples_.radiance, lane); });
   }
+  // Returns the object of a lane's emitter as it is placed at the time of the lane.
+  const Instance &placed(uint32_t lane) {
+    const uint32_t instance = emitter_of(lane).instance();
+    return placed_.empty() ? scene_.geometry.instances[instance]
+                           : scene_.geometry.placed_at(instance, time_[lane], placed_[lane]);
+  }
   const Emitter &emitter_of(uint32_t lane) const {
     return scene_.lights.emitters()[choices_.number[lane] - scene_.lights.lamps().size()];
   }
@@ -218,6 +226,8 @@ private:
   LightChoices choices_{};
   const Light *lamp_[kBlockLanes];
   Words face_;                                    // of the chosen emitter
+  const float *time_ = nullptr;                   // of the vertices, by lane
+  std::vector<Instance> placed_;                  // by lane; empty where nothing moves
   uint32_t lamps_ = 0, emitters_ = 0, skies_ = 0; // lanes that have chosen these
   SkyBlock directions_{};
   FaceBlock faces_{};

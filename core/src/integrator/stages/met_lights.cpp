@@ -80,7 +80,8 @@ float MetLights::emission_weight(const Scattering &from, const Surface &surface)
   if (!emitter)
     return 1.0f;
   const double pdf = emitter->face_pdf(scene_.geometry, from.p, surface);
-  return mis_weight(from.pdf, pdf * scene_.lights.probability(scene_.geometry, from.query(), *emitter, surface.primitive));
+  return mis_weight(from.pdf,
+                    pdf * scene_.lights.probability(scene_.geometry, from.query(), *emitter, surface.time, surface.primitive));
 }
 
 void MetLights::add_miss(uint32_t lane, const glm::dvec3 &d, LightPath<float> path, const glm::dvec3 *eye) {

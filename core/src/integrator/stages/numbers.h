@@ -25,6 +25,9 @@ enum VertexDimension : uint32_t {
 // The decisions at crossings have dimensions of their own, far behind the others; light samples there share those of the next
 // vertex.
 inline constexpr uint32_t kDimensionOpacity = 1u << 16;
+// The time of a sample. Through a pinhole it takes a number of the lens, which is one sequence with those of pixel and
+// vertices.
+inline constexpr uint32_t kDimensionTime = 1u << 29;
 // The rays of nodes have dimensions of their own by scatterings and crossings, in the order of those of opacity.
 inline constexpr uint32_t kDimensionNodes = 1u << 30;
 // One more than the largest number of surfaces that a path may pass straight through.

@@ -48,6 +48,7 @@ void ProfileStage::send(const Walk &walk) {
   const Probe &probe = probes_.emplace_back(axes, radii, burley_radius(std::min(u, 1.0f)) * radius);
   Ray &ray = rays_.emplace_back();
   axes.place(walk.ray.o, double(probe.r), double(kBurleyReach) * double(radius), ray.o, ray.d, ray.tmax);
+  ray.time = walk.ray.time;
   instance_of_.push_back(walk.instance);
 }
 

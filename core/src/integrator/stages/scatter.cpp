@@ -36,9 +36,9 @@ uint32_t ScatterStage::kind(uint32_t lane) const {
   return next_.transmitted >> lane & 1 ? RayKind::Transmission : next_.diffuse >> lane & 1 ? RayKind::Diffuse : RayKind::Glossy;
 }
 
-void ScatterStage::write_ray(uint32_t lane, const Hit &hit, uint32_t kinds, Ray &ray) const {
+void ScatterStage::write_ray(uint32_t lane, const Hit &hit, uint32_t kinds, float time, Ray &ray) const {
   lancer::write_ray(hit, get(next_.origin, lane), glm::dvec3(get(next_.wi, lane)), std::numeric_limits<double>::infinity(),
-                    kinds, ray);
+                    kinds, time, ray);
 }
 
 } // namespace lancer

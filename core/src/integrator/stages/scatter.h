@@ -52,7 +52,7 @@ public:
   // of paths that share its weight. beta: divided by the probability of survival.
   static bool survives(uint32_t scatterings, float u, float sharers, glm::vec3 &beta);
   // Writes the next ray of a lane in place.
-  void write_ray(uint32_t lane, const Hit &hit, uint32_t kinds, Ray &ray) const;
+  void write_ray(uint32_t lane, const Hit &hit, uint32_t kinds, float time, Ray &ray) const;
   // Returns the RayKind bit of a lane's next ray.
   uint32_t kind(uint32_t lane) const;
 

@@ -21,10 +21,12 @@ void write_shadow_ray(const Scene &scene, const SurfaceStage &surfaces, uint32_t
     return;
   }
   const glm::dvec3 o = get(lit.origin, lane);
+  const float time = surfaces.surfaces().time[lane];
   if (far)
-    write_ray(surfaces.hit(lane), o, get(samples.wi, lane), std::numeric_limits<double>::infinity(), RayKind::Shadow, ray);
+    write_ray(surfaces.hit(lane), o, get(samples.wi, lane), std::numeric_limits<double>::infinity(), RayKind::Shadow, time,
+              ray);
   else
-    write_ray(surfaces.hit(lane), o, get(samples.target, lane) - o, 1.0, RayKind::Shadow, ray);
+    write_ray(surfaces.hit(lane), o, get(samples.target, lane) - o, 1.0, RayKind::Shadow, time, ray);
 }
 
 uint64_t ShadowStage::trace_solid() {

@@ -32,6 +32,10 @@ SurfaceStage::SurfaceStage(const Scene &scene, const Camera &camera, const Integ
   materials_.spreads = scene.features & kFeatureMipmaps;
   lobes_.storage = reinterpret_cast<std::byte *>(storage_.data());
   nodes_.scene = scene.node_scene(&camera);
+  if (!(scene.features & kFeatureMotion))
+    return;
+  placed_.resize(kBlockLanes);
+  nodes_.moved = &moved_;
 }
 
 uint32_t SurfaceStage::add(const Ray &ray, const Hit &hit, const MaterialView &material, bool ends) {
@@ -47,13 +51,19 @@ uint32_t SurfaceStage::add(const Ray &ray, const Hit &hit, const MaterialView &m
   materials_.seen_by_camera |= uint32_t{(ray.kinds & RayKind::Camera) != 0} << lane;
   hits_.used |= bit;
   hits_.placement[lane] = instance.placement();
+  surfaces_.time[lane] = ray.time;
+  if (!placed_.empty()) {
+    const Instance &placed = scene_.geometry.placed_at(hit.instance, ray.time, placed_[lane]);
+    hits_.placement[lane] = placed.placement();
+    moved_.instance[lane] = &placed;
+    moved_.time[lane] = ray.time;
+  }
   if (instance.kind == ShapeKind::Mesh) {
     const MeshView &mesh = scene_.geometry.meshes[instance.mesh];
-    const glm::uvec3 &triangle = mesh.triangles[hit.primitive];
     for (int corner = 0; corner < 3; ++corner)
-      put(mesh.positions[triangle[corner]], hits_.corner[corner], lane);
+      put(mesh.vertex(hit.primitive, corner, ray.time), hits_.corner[corner], lane);
     glm::vec3 n[3];
-    if (corner_normals(mesh, instance.shading, hit.primitive, n)) {
+    if (corner_normals(mesh, instance.shading, hit.primitive, ray.time, n)) {
       for (int corner = 0; corner < 3; ++corner)
         put(n[corner], hits_.normals[corner], lane);
       hits_.smooth |= bit;
@@ -82,6 +92,7 @@ void SurfaceStage::replace(uint32_t lane, const Surface &surface, const glm::dve
   surfaces_.offset[lane] = surface.offset;
   put(surface.ng, surfaces_.ng, lane);
   put(surface.ns, surfaces_.ns, lane);
+  surfaces_.time[lane] = surface.time;
   view_along(lane, view);
 }
 
@@ -230,6 +241,7 @@ Surface SurfaceStage::surface(uint32_t lane) const {
   surface.bary = {met.u, met.v};
   surface.instance = met.instance;
   surface.primitive = met.primitive;
+  surface.time = surfaces_.time[lane];
   surface.material = material_of(scene_.geometry, scene_.slots, met.instance, met.primitive);
   return surface;
 }

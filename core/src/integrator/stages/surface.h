@@ -33,6 +33,7 @@ struct alignas(64) SurfaceBlock {
   Doubles p[3], offset, length;
   Floats ng[3], ns[3], wo[3];
   Floats terminator;
+  Floats time; // of the ray; by add() and replace()
 };
 
 // The materials at the surfaces, and what their nodes say.
@@ -163,6 +164,7 @@ public:
   const MaterialView &material(uint32_t lane) const { return *materials_.material[lane]; }
   const Ray &ray(uint32_t lane) const { return *ray_of_[lane]; }
   const Hit &hit(uint32_t lane) const { return *hit_of_[lane]; }
+  // Returns the instance of a lane as it stands; moved or not.
   const Instance &instance(uint32_t lane) const { return scene_.geometry.instances[hit(lane).instance]; }
   // Returns the distance from the origin of a lane's ray to its hit.
   double distance(uint32_t lane) const { return hit(lane).t * surfaces_.length[lane]; }
@@ -212,6 +214,8 @@ private:
   glm::vec3 emission_[kBlockLanes], transmittance_[kBlockLanes]; // of the material
   NodeBlock nodes_{};
   LookingLanes looking_{};
+  MovedLanes moved_{};
+  std::vector<Instance> placed_; // by lane, at the time of its ray; empty where nothing moves
   std::vector<NodeLanes> values_;
   std::vector<Bytes> storage_;
 };

@@ -13,12 +13,12 @@ struct SmoothTriangle {
 };
 
 // Returns false where the triangle has no smooth normals.
-bool read_triangle(const MeshView &mesh, const Instance &instance, uint32_t triangle, SmoothTriangle &smooth) {
+bool read_triangle(const MeshView &mesh, const Instance &instance, uint32_t triangle, float time, SmoothTriangle &smooth) {
   glm::vec3 n[3];
-  if (!corner_normals(mesh, instance.shading, triangle, n))
+  if (!corner_normals(mesh, instance.shading, triangle, time, n))
     return false;
   for (int i = 0; i < 3; ++i) {
-    smooth.v[i] = glm::dvec3(mesh.vertex(triangle, i));
+    smooth.v[i] = glm::dvec3(mesh.vertex(triangle, i, time));
     smooth.n[i] = glm::dvec3(n[i]);
   }
   // A flat face among smooth faces has the same normal at all corners.
@@ -50,13 +50,15 @@ double height(const SmoothTriangle &t, const glm::dvec3 &b, const glm::dvec3 &p,
 
 glm::dvec3 terminator_offset(const GeometryView &geometry, const Surface &surface, const glm::vec3 &n, const glm::vec3 &ng,
                              const glm::vec3 &wi) {
-  const Instance &instance = geometry.instances[surface.instance];
-  if (instance.kind != ShapeKind::Mesh)
+  const Instance &still = geometry.instances[surface.instance];
+  if (still.kind != ShapeKind::Mesh)
     return glm::dvec3(0.0);
-  const float amount = terminator_amount(instance.terminator, n, ng, wi);
+  const float amount = terminator_amount(still.terminator, n, ng, wi);
   SmoothTriangle triangle;
-  if (!(amount > 0.0f) || !read_triangle(geometry.meshes[instance.mesh], instance, surface.primitive, triangle))
+  if (!(amount > 0.0f) || !read_triangle(geometry.meshes[still.mesh], still, surface.primitive, surface.time, triangle))
     return glm::dvec3(0.0);
+  Instance moved;
+  const Instance &instance = geometry.placed_at(surface.instance, surface.time, moved);
   const glm::dvec3 b(1.0 - surface.bary.x - surface.bary.y, surface.bary.x, surface.bary.y);
   const glm::dvec3 p = b.x * triangle.v[0] + b.y * triangle.v[1] + b.z * triangle.v[2];
   const glm::dvec3 lift = b.x * triangle.n[0] + b.y * triangle.n[1] + b.z * triangle.n[2];

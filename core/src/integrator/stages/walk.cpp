@@ -117,6 +117,7 @@ void WalkStage::look(std::span<const Walk> walks) {
       ray.o = get(block.p, lane);
       ray.d = glm::dvec3(get(block.d, lane));
       ray.tmax = double(block.reach[lane]);
+      ray.time = walk.ray.time;
       // The first ray starts on the surface, the others within the object.
       if (block.steps[lane] == 0) {
         ray.skip_instance = walk.ray.skip_instance;

@@ -1,0 +1,96 @@
+"""The settings of motion blur: when the shutter is open, and at which times objects and the camera are read.
+
+Relative times run from -1, where the shutter opens, to 1, where it closes, as in Cycles; 0 is its middle.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..bindings import snapshot
+
+# Samples of the shutter's curve, as in Cycles.
+_CURVE = 256
+# The fewest and the most keys of lancer_motion.
+LEAST_KEYS, MOST_KEYS = 3, 129
+
+
+@dataclass(frozen=True)
+class Shutter:
+    """The shutter of one picture. frames: how long it is open; middle: the time of its middle, in frames."""
+
+    frames: float
+    middle: float
+    opening: object  # how far it is open over time, for snapshot.Motion; None: nothing is blurred, keys serve the pass Vector
+    rolling: bool = False
+    rolling_duration: float = 0.1
+
+    @property
+    def blurs(self):
+        return self.opening is not None
+
+    def frame_at(self, relative):
+        """Return the time of a relative time, in frames."""
+        return self.middle + 0.5 * relative * self.frames
+
+
+def shutter_of(scene, wants_vectors):
+    """Return the Shutter of a scene; None if nothing moves in its picture.
+
+    wants_vectors: whether the pass Vector is requested, which Cycles leaves empty with motion blur.
+    """
+    render = scene.render
+    now = scene.frame_current + scene.frame_subframe
+    if not render.use_motion_blur:
+        return Shutter(2.0, now, None) if wants_vectors else None
+    # Properties of Cycles, an add-on that may be disabled. The position was one of them before Blender 4.2.
+    cycles = getattr(scene, "cycles", None)
+    position = getattr(render, "motion_blur_position", None) or getattr(cycles, "motion_blur_position", "CENTER")
+    frames = render.motion_blur_shutter
+    middle = now + {"START": 0.5, "CENTER": 0.0, "END": -0.5}[position] * frames
+    return Shutter(
+        frames,
+        middle,
+        _opening(render.motion_blur_shutter_curve),
+        getattr(cycles, "rolling_shutter_type", "NONE") != "NONE",
+        min(max(getattr(cycles, "rolling_shutter_duration", 0.1), 0.0), 1.0),
+    )
+
+
+def _opening(mapping):
+    mapping.initialize()
+    curve = mapping.curves[0]
+    values = np.array([mapping.evaluate(curve, i / (_CURVE - 1)) for i in range(_CURVE)], np.float32)
+    values = np.where(np.isfinite(values), np.maximum(values, 0.0), 0.0)
+    # A curve that is the same everywhere needs two numbers.
+    return values[:2] if (values == values[0]).all() else values
+
+
+def key_count(thing, owner, shutter):
+    """Return the number of keys of an object, 0 if it stands still. owner: its instancer, or itself."""
+    if not shutter.blurs:
+        return LEAST_KEYS
+    steps = 0
+    for one in dict.fromkeys((thing, owner)):
+        settings = getattr(one, "cycles", None)
+        if not getattr(settings, "use_motion_blur", True):
+            return 0
+        steps = max(steps, getattr(settings, "motion_steps", 1))
+    return min((2 << (max(steps, 1) - 1)) + 1, MOST_KEYS)
+
+
+def reshapes(thing, shutter):
+    """Whether the deformation of an object is blurred, or shown by the pass Vector."""
+    return not shutter.blurs or getattr(getattr(thing, "cycles", None), "use_deform_motion", True)
+
+
+def relative_times(count):
+    """Return the relative times of so many keys."""
+    return tuple(2.0 * i / (count - 1) - 1.0 for i in range(count))
+
+
+def as_motion(shutter, cameras):
+    """Return the snapshot.Motion of a Shutter. cameras: snapshot.Cameras at the keys, or none."""
+    return snapshot.Motion(
+        shutter=shutter.opening, keys=cameras, rolling=shutter.rolling, rolling_duration=shutter.rolling_duration
+    )
