@@ -10,8 +10,8 @@ import bpy
 from ..bindings.abi import LancerError
 from ..bindings.session import Cancelled, Scene, Session
 from ..denoise import view_layer as denoise
-from ..export.moving_scene import export_moving_scene
-from ..export.scene import ExportOptions, export_scene
+from ..export.moving_scene import export_picture
+from ..export.scene import ExportOptions
 from ..export.settings import threads_of
 from ..export.shutter import shutter_of
 from ..host import main_thread, redraw, shared_scenes
@@ -190,11 +190,9 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         if shutter is not None:
             # The updates of a depsgraph that is evaluated at several times do not tell what has changed.
             parts = begin = None
-        options = ExportOptions(self.camera_override, passes.sources(wanted), None if parts else kept, parts, begin)
-        if shutter is None:
-            self._snapshot, messages = export_scene(depsgraph, options, self._is_over)
-        else:
-            self._snapshot, messages = export_moving_scene(depsgraph, options, shutter, self.frame_set, self._is_over)
+        sources = passes.sources(wanted)
+        options = ExportOptions(self.camera_override, sources, None if parts else kept, parts, begin, shutter=shutter)
+        self._snapshot, messages = export_picture(depsgraph, options, self.frame_set, self._is_over)
         if parts is not None:
             self._following.give_back(parts)
             kept.count_parts(self._snapshot, parts)

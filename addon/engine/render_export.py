@@ -12,7 +12,9 @@ import bpy
 
 from ..bindings.abi import LancerError
 from ..export.camera import NO_CAMERA
-from ..export.scene import ExportOptions, export_scene
+from ..export.moving_scene import export_picture
+from ..export.scene import ExportOptions
+from ..export.shutter import shutter_of
 from ..export.unsupported import check_view_layer
 from ..host.scene_copy import copied
 from ..messages.messages import Messages
@@ -43,7 +45,8 @@ def take(engine, depsgraph):
     started = time.monotonic()
     wanted = tuple(item.source for item in render_passes(depsgraph.scene, depsgraph.view_layer_eval))
     try:
-        _asked.snapshot, _asked.messages = export_scene(depsgraph, ExportOptions(engine.camera_override, wanted))
+        options = ExportOptions(engine.camera_override, wanted, shutter=shutter_of(depsgraph.scene, wants_vectors=False))
+        _asked.snapshot, _asked.messages = export_picture(depsgraph, options, engine.frame_set)
     except Exception as error:
         _asked.error = error
     _asked.seconds = time.monotonic() - started

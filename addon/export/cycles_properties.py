@@ -40,7 +40,7 @@ def _none(reason, *names):
 
 
 _VOLUMES = "acts on volumes alone, which are reported"
-_MOTION = "acts with motion blur alone, which is reported"
+_MOTION = "blurs what moves"
 _SUBDIVISION = "divides meshes adaptively"
 _CAUSTICS = "acts with a receiver of shadow caustics alone, which is reported"
 
@@ -88,7 +88,8 @@ _SCENE = {
     **_followed(_SUBDIVISION, "dicing_rate", "max_subdivisions", "dicing_camera", "offscreen_dicing_scale"),
     **_followed(_SUBDIVISION, "feature_set", before=(5, 0)),
     **_none("divides meshes in views alone", "preview_dicing_rate"),
-    **_none(_MOTION, "motion_blur_position", "rolling_shutter_type", "rolling_shutter_duration"),
+    **_followed(_MOTION, "motion_blur_position", before=(4, 2)),
+    **_followed(_MOTION, "rolling_shutter_type", "rolling_shutter_duration"),
     **_none("acts on Script nodes alone, which are reported", "shading_system"),
     **_none("acts on baking alone", "bake_type"),
     **_none("halts Cycles' views", "preview_pause"),
@@ -123,7 +124,7 @@ _OBJECT = {
     **_followed(_SUBDIVISION, "use_adaptive_subdivision", "dicing_rate", before=(5, 0)),
     **_told("Lancer has the caustics that paths find", "is_caustics_receiver"),
     **_none(_CAUSTICS, "is_caustics_caster"),
-    **_none(_MOTION, "use_motion_blur", "use_deform_motion", "motion_steps"),
+    **_followed(_MOTION, "use_motion_blur", "use_deform_motion", "motion_steps"),
     **_none("acts with Fast GI alone, which is reported", "ao_distance"),
 }
 

@@ -45,10 +45,12 @@ class Places(NamedTuple):
                 return False
         return number + 1 == count
 
-    def matrices(self, depsgraph, entries=None):
-        """(rows, 3, 4). entries: of each row, in a depsgraph whose entries are in another order."""
-        entries = self.entries if entries is None else entries
-        columns = self._columns(depsgraph.object_instances)
+    def matrices(self, depsgraph):
+        """(rows, 3, 4)."""
+        return self.placed(self.columns(depsgraph), self.entries)
+
+    def placed(self, columns, entries):
+        """(rows, 3, 4). columns: of a depsgraph; entries: of each row in it."""
         matrices = columns[entries, :, :3].transpose(0, 2, 1).astype(float, "C")
         rows = np.flatnonzero(self.placements >= 0)
         if len(rows):
@@ -56,8 +58,9 @@ class Places(NamedTuple):
             matrices[rows] = (whole @ np.array(self.exact)[self.placements[rows]])[:, :3]
         return matrices
 
-    def _columns(self, walk):
+    def columns(self, depsgraph):
         """Return (entries, 4, 4), the columns of all matrices. A second walk is faster than a Python object for each entry."""
+        walk = depsgraph.object_instances
         if self.one_by_one:
             # Copy each matrix at once: the walk moves the entry that the matrix refers to.
             return np.array([np.array(entry.matrix_world) for entry in walk], np.float32).transpose(0, 2, 1)

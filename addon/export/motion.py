@@ -8,6 +8,7 @@ import dataclasses
 
 import numpy as np
 
+from ..bindings.enums import InstanceKind
 from ..bindings.snapshot import InstanceMotion
 from ..messages.messages import Messages
 from .camera import export_camera
@@ -15,97 +16,116 @@ from .mesh import read_shape, shown_mesh
 from .shutter import as_motion, key_count, relative_times, reshapes
 
 _NUMBERS = 8  # of an entry's persistent id
+_MESH = int(InstanceKind.MESH)
+
+
+class Instant:
+    """All entries of a depsgraph as it is evaluated at one time.
+
+    keys: (entries, 6), what tells an entry apart. shapes: Shape of a mesh by the key of an entry that shows it.
+    """
+
+    def __init__(self, depsgraph, places):
+        """places: the Places of the export."""
+        entries = depsgraph.object_instances
+        count = len(entries)
+        ids = np.empty(_NUMBERS * count, np.int32)
+        entries.foreach_get("persistent_id", ids)
+        marks = np.empty((count, 2), np.uint64)
+        for number, entry in enumerate(entries):
+            parent = entry.parent if entry.is_instance else None
+            marks[number] = entry.object.original.as_pointer(), 0 if parent is None else parent.original.as_pointer()
+        ids = ids.reshape(-1, _NUMBERS)
+        ids[marks[:, 1] == 0] = 0
+        self.keys = np.concatenate([marks, np.ascontiguousarray(ids).view(np.uint64)], axis=1)
+        self.columns = places.columns(depsgraph)
+        self.shapes, self.camera = {}, None
+
+    def rows_of(self, keys):
+        """Return the number of the entry with each of these keys, -1 where there is none."""
+        if len(keys) and np.array_equal(keys, self.keys[: len(keys)]):
+            return np.arange(len(keys))
+        numbers = {key.tobytes(): number for number, key in enumerate(self.keys)}
+        return np.array([numbers.get(key.tobytes(), -1) for key in keys], np.int64)
 
 
 class MotionReader:
-    """Reads the keys of one export."""
+    """Reads the keys of one export; the depsgraph is evaluated in the middle of the shutter when it is made."""
 
-    def __init__(self, depsgraph, shutter, messages, obey, camera):
-        """obey: is called between steps, and ends the export by an exception. camera: the camera object."""
-        self._depsgraph, self._shutter, self._messages, self._obey = depsgraph, shutter, messages, obey
+    def __init__(self, depsgraph, table, places, camera, shutter):
+        """table, places: of the instances as they are now. camera: the camera object."""
+        self._depsgraph, self._table, self._places, self._shutter = depsgraph, table, places, shutter
         self._camera = camera
-        self._cameras = {}  # snapshot.Camera by relative time
-        self._matrices = {}  # of all rows, by relative time
-        self._shapes = {}  # by number of the mesh, then by relative time
+        middle = Instant(depsgraph, places)
+        self._keys = middle.keys[places.entries]  # of the table's rows
+        self._counts = np.zeros(len(table), np.int64)  # of keys, by row
+        self._owners = {}  # the row of the first instance of each mesh that changes its shape
+        self._instants = {}
+        self._find_movers()
+        self._camera_count = key_count(camera.original, camera.original, shutter)
 
-    def begin(self, table, places, camera):
-        """Note what may move in the scene as it is evaluated now, in the middle of the shutter. camera: a snapshot.Camera."""
-        self._table, self._places = table, places
-        self._keys = _Keys(self._depsgraph, places)
-        counts = np.zeros(len(table), np.int64)
-        owners = {}  # of meshes that change their shape: the row of the first instance
+    def _find_movers(self):
+        row_of = {int(entry): row for row, entry in enumerate(self._places.entries)}
         known = {}
-        for row, entry in self._rows(self._keys):
+        for number, entry in enumerate(self._depsgraph.object_instances):
+            row = row_of.get(number)
+            if row is None:
+                continue
             thing = entry.instance_object if entry.is_instance else entry.object
             owner = entry.parent if entry.is_instance else thing
             of = thing.original, owner.original
             if of not in known:
                 known[of] = key_count(*of, self._shutter), self._changes_shape(thing)
-            counts[row], changes = known[of]
-            if changes and counts[row] and table.kinds[row] == 0:
-                owners.setdefault(int(table.meshes[row]), row)
-        self._counts, self._owners = counts, owners
-        self._camera_count = key_count(self._camera.original, self._camera.original, self._shutter)
-        self._matrices[0.0] = table.matrices
-        self._cameras[0.0] = camera
+            self._counts[row], changes = known[of]
+            if changes and self._counts[row] and self._table.kinds[row] == _MESH:
+                self._owners.setdefault(int(self._table.meshes[row]), row)
 
     def _changes_shape(self, thing):
-        if thing.type != "MESH" or not reshapes(thing, self._shutter):
+        if thing.type != "MESH" or not reshapes(thing.original, self._shutter):
             return False
         return thing.is_deform_modified(self._depsgraph.scene, "RENDER")
 
     def times(self):
-        """Return the relative times at which the scene is to be evaluated, in order."""
+        """Return the relative times at which something is to be read, the middle first."""
         counts = {*np.unique(self._counts).tolist(), self._camera_count} - {0}
-        return sorted({time for count in counts for time in relative_times(count)})
+        return sorted({time for count in counts for time in relative_times(count)}, key=lambda time: (time != 0.0, time))
 
-    def read(self, relative):
-        """Read the scene as it is evaluated now, at a relative time."""
-        self._obey()
-        if relative in relative_times(self._camera_count or 3):
-            scratch = Messages()
-            self._cameras[relative] = export_camera(self._camera, self._depsgraph, scratch)
-        if relative != 0.0:
-            self._read_matrices(relative)
-        if self._owners:
-            self._read_shapes(relative)
+    def take(self, relative, instant):
+        """Take an Instant that an earlier picture has read; return whether it has all that this one needs."""
+        wanted = {self._keys[row].tobytes() for row in self._owners.values()}
+        if instant is None or not wanted <= instant.shapes.keys() or instant.camera is None:
+            return False
+        self._instants[relative] = instant
+        return True
 
-    def _read_matrices(self, relative):
-        rows = self._keys.rows_in(_Keys(self._depsgraph, self._places))
-        matrices = self._places.matrices(self._depsgraph, np.maximum(rows, 0))
-        missing = rows < 0
-        matrices[missing] = self._table.matrices[missing]
-        self._matrices[relative] = matrices
-
-    def _read_shapes(self, relative):
-        now = self._keys if relative == 0.0 else _Keys(self._depsgraph, self._places)
-        rows = self._keys.rows_in(now)
-        wanted = {int(rows[row]): mesh for mesh, row in self._owners.items() if rows[row] >= 0}
+    def read(self, relative, obey):
+        """Return the Instant of the scene as it is evaluated now. obey: ends the export by an exception."""
+        obey()
+        instant = self._instants[relative] = Instant(self._depsgraph, self._places)
+        instant.camera = export_camera(self._camera, self._depsgraph, Messages())
+        wanted = {self._keys[row].tobytes() for row in self._owners.values()}
+        if not wanted:
+            return instant
         for number, entry in enumerate(self._depsgraph.object_instances):
-            mesh = wanted.get(number)
-            if mesh is None:
+            key = instant.keys[number].tobytes()
+            if key not in wanted:
                 continue
-            self._obey()
+            obey()
             thing = entry.object
             with shown_mesh(thing, entry.instance_object if entry.is_instance else thing) as data:
-                self._shapes.setdefault(mesh, {})[relative] = read_shape(data, self._obey)
+                instant.shapes[key] = read_shape(data, obey)
+        return instant
 
-    def _rows(self, keys):
-        """Yield (row, entry) of all rows of the table."""
-        row_of = {int(entry): row for row, entry in enumerate(self._places.entries)}
-        for number, entry in enumerate(self._depsgraph.object_instances):
-            if number in row_of:
-                yield row_of[number], entry
-
-    def result(self, snapshot):
+    def result(self, snapshot, messages):
         """Return the snapshot with the motion that was read."""
         cameras = ()
         if self._camera_count:
-            cameras = tuple(self._cameras[time] for time in relative_times(self._camera_count))
+            cameras = tuple(self._instants[time].camera for time in relative_times(self._camera_count))
+            # Where something else moves, so does the region of a camera that stands still.
             if all(camera == cameras[0] for camera in cameras):
                 cameras = ()
         table = dataclasses.replace(snapshot.instances, motions=tuple(self._motions()))
-        meshes = self._meshes(snapshot.meshes)
+        meshes = self._meshes(snapshot.meshes, messages)
         return snapshot.replaced(meshes=meshes, instances=table, motion=as_motion(self._shutter, cameras))
 
     def _motions(self):
@@ -113,76 +133,61 @@ class MotionReader:
             if count == 0:
                 continue
             rows = np.flatnonzero(self._counts == count)
-            keys = np.stack([self._matrices[time][rows] for time in relative_times(count)], axis=1)
+            keys = np.stack([self._matrices(time)[rows] for time in relative_times(count)], axis=1)
             moves = (keys != keys[:, :1]).any(axis=(1, 2, 3))
             if moves.any():
                 yield InstanceMotion(instances=rows[moves], matrices=keys[moves])
 
-    def _meshes(self, meshes):
+    def _matrices(self, relative):
+        instant = self._instants[relative]
+        entries = instant.rows_of(self._keys)
+        matrices = self._places.placed(instant.columns, np.maximum(entries, 0))
+        missing = entries < 0
+        matrices[missing] = self._table.matrices[missing]
+        return matrices
+
+    def _meshes(self, meshes, messages):
         """Return the meshes with the keys of those that change their shape."""
         result = list(meshes)
         for number, row in self._owners.items():
-            shapes = self._shapes.get(number, {})
-            middle = shapes.get(0.0)
-            times = relative_times(int(self._counts[row]))
+            key = self._keys[row].tobytes()
+            middle = self._instants[0.0].shapes.get(key)
+            who = f"mesh '{meshes[number].name}'"
             # The mesh may have been cut by adaptive subdivision, whose faces follow the camera.
             if middle is None or not middle.fits(meshes[number]):
-                self._tell(number, meshes, "its deformation is not blurred: adaptive subdivision")
+                text = f"{who}: with adaptive subdivision its change of shape is not blurred"
+                messages.add(text, "feature:deformation motion of adaptive subdivision")
                 continue
-            keys = [shapes.get(time, middle) for time in times]
-            if not all(key.like(middle) for key in keys):
-                self._tell(number, meshes, "its deformation is not blurred: its number of vertices changes within the shutter")
-                keys = [key if key.like(middle) else middle for key in keys]
-            if all(np.array_equal(key.positions, middle.positions) for key in keys):
+            shapes = [self._instants[time].shapes.get(key, middle) for time in relative_times(int(self._counts[row]))]
+            if not all(shape.like(middle) for shape in shapes):
+                messages.add(
+                    f"{who}: the number of its vertices changes within the shutter, as in Cycles it is not blurred then"
+                )
+                shapes = [shape if shape.like(middle) else middle for shape in shapes]
+            if all(np.array_equal(shape.positions, middle.positions) for shape in shapes):
                 continue
-            moved = np.stack([key.positions for key in keys])
-            normals = None if middle.normals is None else np.stack([key.normals for key in keys])
+            moved = np.stack([shape.positions for shape in shapes])
+            normals = None if middle.normals is None else np.stack([shape.normals for shape in shapes])
             result[number] = dataclasses.replace(meshes[number], moved_positions=moved, moved_normals=normals)
         return tuple(result)
 
-    def _tell(self, number, meshes, text):
-        self._messages.add(f"mesh '{meshes[number].name}': {text}")
 
-
-class _Keys:
-    """What tells the entries of an evaluated scene apart."""
-
-    def __init__(self, depsgraph, places):
-        entries = depsgraph.object_instances
-        self.count = len(entries)
-        ids = np.empty(_NUMBERS * self.count, np.int32)
-        entries.foreach_get("persistent_id", ids)
-        marks = np.empty((self.count, 2), np.uint64)
-        for number, entry in enumerate(entries):
-            parent = entry.parent if entry.is_instance else None
-            marks[number] = entry.object.original.as_pointer(), 0 if parent is None else parent.original.as_pointer()
-        ids = ids.reshape(-1, _NUMBERS)
-        ids[marks[:, 1] == 0] = 0
-        self._keys = np.concatenate([marks, np.ascontiguousarray(ids).view(np.uint64)], axis=1)
-        self._entries = places.entries
-
-    def rows_in(self, other):
-        """Return the number of the entry in another _Keys for each row, -1 where it has none."""
-        own = self._keys[self._entries]
-        if other is self:
-            return self._entries.astype(np.int64)
-        if other.count == self.count and np.array_equal(other._keys, self._keys):
-            return self._entries.astype(np.int64)
-        numbers = {key.tobytes(): number for number, key in enumerate(other._keys)}
-        return np.array([numbers.get(key.tobytes(), -1) for key in own], np.int64)
-
-
-def read_motion(snapshot, depsgraph, camera, places, shutter, set_frame, messages, obey):
+def read_motion(snapshot, depsgraph, camera, places, options, messages, obey):
     """Return the snapshot with the motion within the shutter, in whose middle the depsgraph is evaluated.
 
-    camera: the camera object. set_frame: evaluates the depsgraph at a time in frames. The other arguments: see MotionReader.
+    camera: the camera object. options: the ExportOptions, with shutter and set_frame.
     """
-    reader = MotionReader(depsgraph, shutter, messages, obey, camera)
-    reader.begin(snapshot.instances, places, snapshot.camera)
-    for time in reader.times():
-        if time != 0.0:
-            set_frame(shutter.frame_at(time))
-        else:
-            set_frame(shutter.middle)
-        reader.read(time)
-    return reader.result(snapshot)
+    shutter, kept = options.shutter, options.kept
+    known = kept.instants if kept is not None else {}
+    reader = MotionReader(depsgraph, snapshot.instances, places, camera, shutter)
+    found = {}
+    for relative in reader.times():
+        frame = shutter.frame_at(relative)
+        # The shutter of one frame may close when that of the next one opens.
+        if relative == 0.0 or not reader.take(relative, known.get(frame)):
+            if relative != 0.0:
+                options.set_frame(frame)
+            found[frame] = reader.read(relative, obey)
+    if kept is not None:
+        kept.instants = found
+    return reader.result(snapshot, messages)

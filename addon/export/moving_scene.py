@@ -1,4 +1,4 @@
-"""Export of a scene whose shutter is open for some time."""
+"""Export of a scene for a picture: as it stands, or while its shutter is open."""
 
 import dataclasses
 import math
@@ -8,11 +8,14 @@ from .scene import export_scene
 from .shader_cache import ShaderCache
 
 
-def export_moving_scene(depsgraph, options, shutter, frame_set, poll=None):
-    """Return (SceneSnapshot, Messages) of a scene with a Shutter, as export_scene.
+def export_picture(depsgraph, options, frame_set, poll=None):
+    """Return (SceneSnapshot, Messages) of a scene with what moves while options.shutter is open, as export_scene.
 
     frame_set: of the RenderEngine; it is called with the scene's own frame at the end, and if the export fails.
     """
+    shutter = options.shutter
+    if shutter is None:
+        return export_scene(depsgraph, options, poll)
     scene = depsgraph.scene
     now = scene.frame_current, scene.frame_subframe
 
@@ -20,7 +23,7 @@ def export_moving_scene(depsgraph, options, shutter, frame_set, poll=None):
         frame = math.floor(time)
         frame_set(frame, time - frame)
 
-    options = dataclasses.replace(options, shutter=shutter, set_frame=set_frame)
+    options = dataclasses.replace(options, set_frame=set_frame)
     try:
         settings = None
         if shutter.middle != now[0] + now[1]:

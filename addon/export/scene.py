@@ -99,16 +99,8 @@ def export_scene(depsgraph, options=None, poll=None):
     )
     obey()
     if options.shutter is not None:
-        snapshot = read_motion(
-            snapshot.replaced(camera=camera),
-            depsgraph,
-            options.camera or scene.camera,
-            instances.places,
-            options.shutter,
-            options.set_frame,
-            messages,
-            obey,
-        )
+        at_middle = snapshot.replaced(camera=camera)
+        snapshot = read_motion(at_middle, depsgraph, options.camera or scene.camera, instances.places, options, messages, obey)
     if parts is not None:
         # The instance of a lamp moves with its instancer; the places of object and camera decide how a mesh is divided.
         moves_freely = not (instances.has_lamp_instances or divider.depends_on_places)

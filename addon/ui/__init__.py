@@ -7,7 +7,6 @@ from . import adopted, camera, check, described, light, material, messages, moti
 
 CLASSES = (
     *render.CLASSES,
-    *motion.CLASSES,
     *messages.CLASSES,
     *uses.CLASSES,
     *check.CLASSES,

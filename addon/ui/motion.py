@@ -3,11 +3,11 @@
 import bpy
 
 from .panel import LancerPanel, setting
-from .render import LancerRenderPanel
 
 
-class LANCER_RENDER_PT_motion_blur(LancerRenderPanel, bpy.types.Panel):
+class LANCER_RENDER_PT_motion_blur(LancerPanel, bpy.types.Panel):
     bl_label = "Motion Blur"
+    bl_context = "render"
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw_header(self, context):
@@ -26,8 +26,9 @@ class LANCER_RENDER_PT_motion_blur(LancerRenderPanel, bpy.types.Panel):
             row.prop(cycles, "rolling_shutter_duration", text="Duration")
 
 
-class LANCER_RENDER_PT_shutter_curve(LancerRenderPanel, bpy.types.Panel):
+class LANCER_RENDER_PT_shutter_curve(LancerPanel, bpy.types.Panel):
     bl_label = "Shutter Curve"
+    bl_context = "render"
     bl_parent_id = "LANCER_RENDER_PT_motion_blur"
     bl_options = {"DEFAULT_CLOSED"}
 
@@ -74,5 +75,5 @@ class LANCER_OBJECT_PT_motion_blur(LancerPanel, bpy.types.Panel):
             column.prop(thing.cycles, "use_deform_motion", text="Deformation")
 
 
-CLASSES = (LANCER_RENDER_PT_motion_blur, LANCER_RENDER_PT_shutter_curve)
+RENDER_CLASSES = (LANCER_RENDER_PT_motion_blur, LANCER_RENDER_PT_shutter_curve)
 OBJECT_CLASSES = (LANCER_OBJECT_PT_motion_blur,)

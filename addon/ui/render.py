@@ -8,6 +8,7 @@ from ..export.settings import glass_owner
 from ..measure.render_report import percent
 from ..operators import measure_quality, measuring, take_over_cycles
 from ..settings import presets
+from . import motion
 from .panel import LancerPanel, setting, uses_classic
 from .sentences import sentence
 
@@ -387,6 +388,7 @@ CLASSES = (
     LANCER_RENDER_PT_simplify_render,
     LANCER_RENDER_PT_simplify_strokes,
     LANCER_RENDER_PT_subdivision,
+    *motion.RENDER_CLASSES,
     LANCER_RENDER_PT_film,
     LANCER_RENDER_PT_pixel_filter,
     LANCER_RENDER_PT_transparent,

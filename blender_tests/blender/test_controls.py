@@ -17,6 +17,8 @@ ELSEWHERE = {
     "CyclesVisibilitySettings.scatter": "light of volumes, which are not supported",
     "CyclesVisibilitySettings.shadow": "worlds cast none, and Cycles does not show it either",
     "Object.dimensions": "the scale, in the sidebar of the view",
+    "RenderSettings.frame_map_new": "stretches Blender's own time",
+    "RenderSettings.frame_map_old": "stretches Blender's own time",
     "Object.visible_volume_scatter": "light of volumes, which are not supported",
     "RenderSettings.border_max_x": "drawn in the view, with Ctrl+B",
     "RenderSettings.border_max_y": "drawn in the view, with Ctrl+B",
@@ -104,7 +106,7 @@ def test_what_the_export_reads_is_shown(found):
 
 def test_what_is_not_supported_is_hidden(found):
     """Settings that change only messages have no effect and are hidden."""
-    assert {"RenderSettings.use_motion_blur", "RenderSettings.use_multiview"} <= found["tell"]
+    assert {"RenderSettings.use_multiview"} <= found["tell"]
     assert not found["tell"] & found["shown"]
 
 

@@ -45,6 +45,7 @@ SUBJECTS = (
     "skies",
     "cameras",
     "objects",
+    "motion",
     "subdivisions",
     "subdivisions_inputs",
     "films",

@@ -11,7 +11,9 @@ import stage
 from addon.bindings.abi import LancerError
 from addon.denoise import view_layer as denoise
 from addon.engine.passes import render_passes, sources
-from addon.export.scene import ExportOptions, export_scene
+from addon.export.moving_scene import export_picture
+from addon.export.scene import ExportOptions
+from addon.export.shutter import shutter_of
 
 # Properties that select which data-block is shown, and properties that are the data itself.
 _LEFT_OUT = {"rna_type", "engine", "name", "type", "mode", "use_fake_user", "animation_data", "preview", "preview_pause"}
@@ -22,12 +24,17 @@ def exported(scene, view_layer):
     """Return ((snapshot, passes), messages)."""
     view_layer.update()
     wanted = tuple(render_passes(scene, view_layer))
-    options = ExportOptions(passes=sources(wanted))
+    options = ExportOptions(passes=sources(wanted), shutter=shutter_of(scene, wants_vectors=False))
+    depsgraph = bpy.context.evaluated_depsgraph_get()
     try:
-        snapshot, messages = export_scene(bpy.context.evaluated_depsgraph_get(), options)
+        snapshot, messages = export_picture(depsgraph, options, lambda *time: _set_frame(scene, *time))
     except LancerError as error:
         return str(error), []
     return (snapshot, wanted, denoise.wanted(scene, view_layer)), sorted(messages)
+
+
+def _set_frame(scene, frame, subframe):
+    scene.frame_set(frame, subframe=subframe)
 
 
 def settings_of(owner, depth):
@@ -214,6 +221,7 @@ class _Stage:
         self.cube.lancer.shape = "SPHERE"
         yield now(self.cube.lancer)
         self.cube.lancer.shape = "MESH"
+        yield from self._of_motion(now)
 
     def _of_subdivision(self, now):
         """A cube that its levels limit, and one that a camera beside the scene's divides by its pixels."""
@@ -230,6 +238,25 @@ class _Stage:
         cycles.dicing_camera = stage.link("Beside", self.camera.data, (3.0, -6.0, 3.0))
         for cycles.max_subdivisions in (1, 12):
             yield now(cycles, self.cube.cycles)
+
+    def _of_motion(self, now):
+        """A cube that slides and changes its shape."""
+        scene, cube = self.scene, self.cube
+        cube.modifiers.clear()
+        cube.shape_key_add(name="Basis")
+        key = cube.shape_key_add(name="Bent")
+        key.data[0].co.x += 1.0
+        for frame in (0, 2):
+            cube.location.x, key.value = frame, 0.5 * frame
+            cube.keyframe_insert("location", frame=frame)
+            key.keyframe_insert("value", frame=frame)
+        scene.frame_set(1)
+        scene.render.use_motion_blur = True
+        scene.cycles.rolling_shutter_type = "TOP"
+        yield now(scene.render, scene.cycles, cube.cycles)
+        scene.render.use_motion_blur = False
+        cube.shape_key_clear()
+        cube.animation_data_clear()
 
     def _of_materials(self):
         material = self.material

@@ -76,7 +76,7 @@ def missing():
     scene = _lit_cube("LANCER")
     stage.camera()
     stage.light_paths_alike(scene)
-    scene.render.use_motion_blur = True
+    scene.render.use_multiview = True
     for number in (1, 2):
         material = stage.shader(name=f"Wax {number}")
         tree = material.node_tree
@@ -89,5 +89,5 @@ def missing():
         bpy.ops.render.render()
         result[name] = dict(engine.last_missing[scene.name])
         result[f"{name} lines"] = list(engine.last_messages[scene.name])
-        scene.render.use_motion_blur = False
+        scene.render.use_multiview = False
     return result
