@@ -23,8 +23,8 @@ def test_scenes_are_the_same_each_time():
 
 
 def test_names_are_of_one_thing():
-    """But for attributes, properties, parents and modifiers, which belong to others."""
-    belonging = ("attribute", "property", "parent", "modifier")
+    """But for attributes, properties, parents, modifiers and motion, which belong to others."""
+    belonging = ("attribute", "property", "parent", "modifier", "motion")
     for seed in range(200):
         names = [item.name for item in generator.describe(seed) if item.verb not in belonging]
         assert len(set(names)) == len(names), seed

@@ -28,9 +28,12 @@ def animate(owner, path, first, last):
             point.interpolation = "LINEAR"
 
 
-def _open(scene, frames=1.0):
+def open_shutter(scene, frames=1.0, position=None):
     scene.render.use_motion_blur = True
     scene.render.motion_blur_shutter = frames
+    if position is not None:
+        owner = scene.render if hasattr(scene.render, "motion_blur_position") else scene.cycles
+        owner.motion_blur_position = position
     scene.frame_set(1)
 
 
@@ -55,14 +58,14 @@ def motion_object_slides(scene):
     """With its shadow and its reflected light."""
     _stage(scene)
     _slides(_block(scene))
-    _open(scene)
+    open_shutter(scene)
 
 
 @case()
 def motion_object_turns(scene):
     _stage(scene)
     animate(_block(scene), "rotation_euler", (0, 0, 0), (0, 2.6, 1.4))
-    _open(scene)
+    open_shutter(scene)
 
 
 @case()
@@ -72,14 +75,14 @@ def motion_object_turns_in_steps(scene):
     thing = _block(scene)
     animate(thing, "rotation_euler", (0, 0, 0), (0, 9.0, 0))
     thing.cycles.motion_steps = 4
-    _open(scene)
+    open_shutter(scene)
 
 
 @case()
 def motion_object_grows(scene):
     _stage(scene)
     animate(_block(scene), "scale", (0.4, 1.0, 1.0), (2.0, 1.0, 0.3))
-    _open(scene)
+    open_shutter(scene)
 
 
 @case()
@@ -91,7 +94,7 @@ def motion_object_of_a_parent(scene):
     thing = _block(scene, 0.8)
     thing.parent, thing.location = pivot, (1.2, 0, 0)
     animate(pivot, "rotation_euler", (0, 0, 0), (0.3, 2.4, 0))
-    _open(scene)
+    open_shutter(scene)
 
 
 @case()
@@ -111,7 +114,7 @@ def motion_instances(scene):
     scene.collection.objects.link(empty)
     empty.location = (0, 0, 0.9)
     animate(empty, "rotation_euler", (0, 0, 0), (0, 0, 1.2))
-    _open(scene)
+    open_shutter(scene)
 
 
 @case()
@@ -129,7 +132,7 @@ def motion_particles(scene):
     settings.normal_factor = 1.0
     for frame in range(1, 9):
         scene.frame_set(frame)
-    _open(scene)
+    open_shutter(scene)
     scene.frame_set(6)
 
 
@@ -145,7 +148,7 @@ def motion_deformation(scene):
     for point in key.data:
         point.co.x += 1.2 * point.co.z * abs(point.co.z) + 0.4
     animate(key, "value", 0.0, 1.0)
-    _open(scene)
+    open_shutter(scene)
 
 
 @case()
@@ -159,7 +162,7 @@ def motion_deformation_off(scene):
     animate(key, "value", 0.0, 1.0)
     thing.cycles.use_deform_motion = False
     animate(thing, "location", (0, 0, 0.8), (0.6, 0, 0.8))
-    _open(scene)
+    open_shutter(scene)
 
 
 @case()
@@ -188,7 +191,7 @@ def motion_deformation_by_armature(scene):
         pose.rotation_euler[2] = angle
         pose.rotation_euler[0] = angle
         pose.keyframe_insert("rotation_euler", frame=frame)
-    _open(scene)
+    open_shutter(scene)
 
 
 @case()
@@ -197,23 +200,21 @@ def motion_object_switched_off(scene):
     thing = _block(scene)
     _slides(thing)
     thing.cycles.use_motion_blur = False
-    _open(scene)
+    open_shutter(scene)
 
 
 @variants(values={"start": "START", "end": "END"})
 def motion_position(scene, position):
     _stage(scene)
     _slides(_block(scene))
-    _open(scene)
-    owner = scene.render if hasattr(scene.render, "motion_blur_position") else scene.cycles
-    owner.motion_blur_position = position
+    open_shutter(scene, position=position)
 
 
 @case()
 def motion_shutter_curve(scene):
     _stage(scene)
     _slides(_block(scene))
-    _open(scene)
+    open_shutter(scene)
     mapping = scene.render.motion_blur_shutter_curve
     mapping.initialize()
     points = mapping.curves[0].points
@@ -225,7 +226,7 @@ def motion_shutter_curve(scene):
 def motion_rolling_shutter(scene, duration):
     _stage(scene)
     _slides(_block(scene))
-    _open(scene)
+    open_shutter(scene)
     scene.cycles.rolling_shutter_type, scene.cycles.rolling_shutter_duration = "TOP", duration
 
 
@@ -234,7 +235,7 @@ def motion_camera_flies(scene):
     eye = _stage(scene)
     _block(scene)
     animate(eye, "location", (-0.7, -5, 2.0), (0.7, -4.5, 2.4))
-    _open(scene)
+    open_shutter(scene)
 
 
 @case()
@@ -243,7 +244,7 @@ def motion_camera_turns(scene):
     _block(scene)
     turn = eye.rotation_euler.copy()
     animate(eye, "rotation_euler", (turn.x, turn.y, turn.z - 0.2), (turn.x, turn.y + 0.15, turn.z + 0.2))
-    _open(scene)
+    open_shutter(scene)
 
 
 @case()
@@ -251,7 +252,7 @@ def motion_camera_zooms(scene):
     eye = _stage(scene)
     _block(scene)
     animate(eye.data, "lens", 35.0, 80.0)
-    _open(scene)
+    open_shutter(scene)
 
 
 @case()
@@ -261,7 +262,7 @@ def motion_camera_with_lens(scene):
     _slides(_block(scene))
     eye.data.dof.use_dof, eye.data.dof.focus_distance, eye.data.dof.aperture_fstop = True, 3.0, 0.3
     animate(eye, "location", (-0.3, -5, 2.2), (0.3, -5, 2.2))
-    _open(scene)
+    open_shutter(scene)
 
 
 @case()
@@ -273,7 +274,7 @@ def motion_panorama(scene):
     owner = eye.data if hasattr(eye.data, "panorama_type") else eye.data.cycles
     owner.panorama_type = "EQUIRECTANGULAR"
     animate(eye, "location", (-0.4, -1.8, 1.0), (0.4, -1.8, 1.0))
-    _open(scene)
+    open_shutter(scene)
 
 
 @case(quick=True)
@@ -285,7 +286,7 @@ def motion_emitter(scene):
     thing = parts.place(scene, "Glow", parts.cube_mesh("Glow", 0.6), glow, (0, 0, 1.0))
     _slides(thing)
     animate(thing, "rotation_euler", (0, 0, 0), (1.0, 2.0, 0.5))
-    _open(scene)
+    open_shutter(scene)
 
 
 @case()
@@ -305,7 +306,7 @@ def motion_coordinates(scene):
     thing.data.materials[0] = material(paint)
     _slides(thing)
     animate(thing, "rotation_euler", (0, 0, 0), (0, 1.0, 0.8))
-    _open(scene)
+    open_shutter(scene)
 
 
 @case()
@@ -315,7 +316,7 @@ def motion_mirrored(scene):
     thing = _block(scene)
     thing.scale = (-1.0, 1.0, 0.7)
     animate(thing, "rotation_euler", (0.3, 0, 0), (0.3, 0, math.pi * 0.8))
-    _open(scene)
+    open_shutter(scene)
 
 
 @case()
@@ -332,4 +333,4 @@ def motion_glass(scene):
         parts.place(scene, f"Stripe {index}", parts.cube_mesh("Stripe", 0.8), stripe, (1.5 * index - 2.2, 2.2, 0.7))
     ball.visible_diffuse = False
     _slides(ball)
-    _open(scene)
+    open_shutter(scene)

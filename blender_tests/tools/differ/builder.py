@@ -8,7 +8,7 @@ from mathutils import Matrix
 from scenes import parts
 from scenes.parity import subdivisions
 
-from . import build_images, build_meshes, build_nodes, build_photometry
+from . import build_images, build_meshes, build_motion, build_nodes, build_photometry
 
 _MODIFIER_SHAPES = {"MESH"}
 
@@ -232,7 +232,15 @@ class Builder:
         if owner is not None:
             owner[name] = fields["value"]
 
+    def _motion(self, name, fields):
+        owner = self.find(fields["owner"])
+        if owner is not None:
+            build_motion.build_motion(self.scene, owner, fields)
+
     # ---- settings ----
+
+    def _shutter(self, name, fields):
+        build_motion.build_shutter(self.scene, fields)
 
     def _film(self, name, fields):
         for setting, value in fields.items():

@@ -7,6 +7,7 @@ from . import (
     random_frames,
     random_images,
     random_lights,
+    random_motion,
     random_photometry,
     random_properties,
 )
@@ -65,6 +66,7 @@ def describe(seed):
     if dice.chance(0.3):
         for record in images:
             record.fields["cached"] = True
+    everything += random_motion.motion(dice, everything)
     return [record for record in everything if record.fields or record.verb not in ("film", "layer")]
 
 
