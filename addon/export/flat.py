@@ -13,7 +13,7 @@ def report_flat(table, meshes, messages):
     linear, numbers = table.matrices[:, :, :3], table.meshes
     is_mesh = table.kinds == InstanceKind.MESH
     usable = np.flatnonzero(is_mesh & np.isfinite(linear).all(axis=(1, 2)))
-    flat = usable[_is_singular(linear[usable])]
+    flat = usable[is_singular(linear[usable])]
     if not len(flat):
         return
     users = np.bincount(numbers[is_mesh], minlength=len(meshes))
@@ -44,7 +44,7 @@ def _has_two_sides(mesh, cofactors):
     return bool((sides > limit).any() and (sides < -limit).any())
 
 
-def _is_singular(linear):
+def is_singular(linear):
     """Whether each matrix of (count, 3, 3) is singular, independent of the lengths of its columns."""
     # Contiguous entries: a table may hold millions of matrices.
     a, b, c, d, e, f, g, h, i = np.ascontiguousarray(linear.reshape(-1, 9).T)

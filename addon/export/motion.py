@@ -12,6 +12,7 @@ from ..bindings.enums import InstanceKind
 from ..bindings.snapshot import InstanceMotion
 from ..messages.messages import Messages
 from .camera import export_camera
+from .flat import is_singular
 from .mesh import read_shape, shown_mesh
 from .shutter import as_motion, key_count, relative_times, reshapes
 
@@ -124,19 +125,23 @@ class MotionReader:
             # Where something else moves, so does the region of a camera that stands still.
             if all(camera == cameras[0] for camera in cameras):
                 cameras = ()
-        table = dataclasses.replace(snapshot.instances, motions=tuple(self._motions()))
+        table = dataclasses.replace(snapshot.instances, motions=tuple(self._motions(messages)))
         meshes = self._meshes(snapshot.meshes, messages)
         return snapshot.replaced(meshes=meshes, instances=table, motion=as_motion(self._shutter, cameras))
 
-    def _motions(self):
+    def _motions(self, messages):
         for count in np.unique(self._counts).tolist():
             if count == 0:
                 continue
             rows = np.flatnonzero(self._counts == count)
             keys = np.stack([self._matrices(time)[rows] for time in relative_times(count)], axis=1)
             moves = (keys != keys[:, :1]).any(axis=(1, 2, 3))
-            if moves.any():
-                yield InstanceMotion(instances=rows[moves], matrices=keys[moves])
+            rows, keys = rows[moves], keys[moves]
+            flat = is_singular(keys[..., :3].reshape(-1, 3, 3)).reshape(len(rows), count).any(axis=1)
+            for name in np.unique(self._table.name_indices[rows[flat]]):
+                messages.add(f"object '{self._table.names[name]}': a scale is 0 within the shutter; its motion is not blurred")
+            if not flat.all():
+                yield InstanceMotion(instances=rows[~flat], matrices=keys[~flat])
 
     def _matrices(self, relative):
         instant = self._instants[relative]

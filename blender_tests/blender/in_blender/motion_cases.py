@@ -137,6 +137,9 @@ def keys():
     for frame, count in ((2, 1), (3, 3)):
         array.count = count
         array.keyframe_insert("count", frame=frame)
+    turns_over = stage.cube(0.5, stage.shader(), location=(4, 2, 0))
+    turns_over.name = "Turns over"
+    _slide(turns_over, "scale", (-1.0, 1.0, 1.0), (1.0, 1.0, 1.0))
     scene.frame_set(2)
     with _Watch() as watch:
         bpy.ops.render.render()
