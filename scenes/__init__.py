@@ -28,6 +28,8 @@ BUILDERS = {
     "textured": "outdoors.build_textured",
     "leaves": "outdoors.build_leaves",
     "foliage": "outdoors.build_foliage",
+    "runner": "moving.build_runner",
+    "flight": "moving.build_flight",
     "sixty_nodes": "graphs.build_sixty_nodes",
     "procedural_floor": "graphs.build_procedural_floor",
     "lab": "lab.build",

@@ -21,19 +21,19 @@ def _figures():
     }
     lifelike = {"lancer": _record(3e6, [1.0, 1.0]), "cycles": _record(1e6, [2.0, 2.0])}
     figures = {name: {"renderers": records} for name, records in scenes.items()}
-    return {"scenes": {**figures, "wood": {"renderers": lifelike, "lifelike": True}}}
+    return {"scenes": {**figures, "wood": {"renderers": lifelike, "group": "lifelike"}}}
 
 
 def test_goals_take_means_over_scenes_of_the_same_picture():
     assert goals.rate_ratios(_figures(), "cycles") == {"one": pytest.approx(4.0), "two": pytest.approx(1.0)}
     assert goals.efficiency_ratios(_figures(), "cycles") == {"one": pytest.approx(6.0)}
-    assert goals.rate_ratios(_figures(), "cycles", lifelike=True) == {"wood": pytest.approx(3.0)}
+    assert goals.rate_ratios(_figures(), "cycles", group="lifelike") == {"wood": pytest.approx(3.0)}
     assert goals.rate_ratios(_figures(), "mitsuba_llvm") == {}
 
 
 def test_goals_name_every_row_and_what_is_not_measured():
     verdicts = {verdict.what: verdict for verdict in goals.judge(_figures())}
-    assert len(verdicts) == 27
+    assert len(verdicts) == 28
     rate = verdicts["samples/s against Cycles"]
     assert (rate.measured, rate.reached) == ("2.00x, least 1.00x (two), 2 scenes", False)
     assert verdicts["efficiency against Cycles"].reached is True
@@ -142,8 +142,8 @@ def test_tables_replace_what_is_between_the_marks(tmp_path):
     assert text.startswith("before\n") and text.endswith("after\n") and "old" not in text
     assert "LuxCore (no wheel)" in text and text.count("Commit abc.") == 1
     assert "| samples/s against Cycles | 3.5x in geometric mean | 2.00x, least 1.00x (two), 2 scenes | missed |" in text
-    # A head, a line below it and eleven ratios; only the page has the scenes.
-    assert sum(line.startswith("|") for line in text.splitlines()) == 13 and "a scene" not in text
+    # A head, a line below it and twelve ratios; only the page has the scenes.
+    assert sum(line.startswith("|") for line in text.splitlines()) == 14 and "a scene" not in text
     # The table for users has the scenes on which both renderers were timed.
     text = readme.read_text()
     assert text.startswith("before\n") and text.endswith("after\n") and "old" not in text

@@ -5,36 +5,10 @@ import math
 import bpy
 
 from .. import parts
+from ..moving import animate, open_shutter
 from .catalogue import case, variants
 from .nodes import material, shader
 from .stages import camera, floor, lamp, sky
-
-_FIRST, _LAST = 0, 2
-
-
-def _curves(action):
-    if bpy.app.version < (4, 4):
-        return action.fcurves
-    return action.layers[0].strips[0].channelbags[0].fcurves
-
-
-def animate(owner, path, first, last):
-    """Moves a property from one value to another within the frames 0 to 2, at constant speed."""
-    for frame, value in ((_FIRST, first), (_LAST, last)):
-        setattr(owner, path, value)
-        owner.keyframe_insert(path, frame=frame)
-    for curve in _curves(owner.id_data.animation_data.action):
-        for point in curve.keyframe_points:
-            point.interpolation = "LINEAR"
-
-
-def open_shutter(scene, frames=1.0, position=None):
-    scene.render.use_motion_blur = True
-    scene.render.motion_blur_shutter = frames
-    if position is not None:
-        owner = scene.render if hasattr(scene.render, "motion_blur_position") else scene.cycles
-        owner.motion_blur_position = position
-    scene.frame_set(1)
 
 
 def _block(scene, size=1.2):
@@ -186,7 +160,7 @@ def motion_deformation_by_armature(scene):
     thing.modifiers.new("Bones", "ARMATURE").object = bones
     pose = bones.pose.bones["Top"]
     pose.rotation_mode = "XYZ"
-    for frame, angle in ((_FIRST, -0.6), (_LAST, 0.8)):
+    for frame, angle in ((0, -0.6), (2, 0.8)):
         pose.rotation_euler = (0, 0, 0)
         pose.rotation_euler[2] = angle
         pose.rotation_euler[0] = angle

@@ -47,7 +47,7 @@ class Contest:
     def measure(self, scene):
         """Return all figures of one scene, for the JSON."""
         result = {"title": scene.title, "size": [scene.width, scene.height], "samples": scene.samples, "renderers": {}}
-        result["reference_samples"], result["lifelike"] = scene.reference, scene.lifelike
+        result["reference_samples"], result["group"] = scene.reference, scene.group
         snapshot = str(jobs.OUTPUT / "scenes" / f"{scene.name}-{scene.width}.npz")
         self.snapshots[scene.name] = snapshot
         try:

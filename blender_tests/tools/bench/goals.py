@@ -16,10 +16,10 @@ def judge_against_others(figures):
     return [row(figures) for row in _AGAINST_OTHERS]
 
 
-def shown(figures, key, lifelike=False):
+def shown(figures, key, group=""):
     """Yield (scene, our record, theirs) of scenes where both were timed and show the same picture."""
     for name, scene in figures.get("scenes", {}).items():
-        if scene.get("lifelike", False) != lifelike:
+        if scene.get("group", "") != group:
             continue
         ours, theirs = (scene.get("renderers", {}).get(k, {}) for k in ("lancer", key))
         same = theirs.get("difference", {"same": True})["same"]
@@ -27,16 +27,16 @@ def shown(figures, key, lifelike=False):
             yield name, ours, theirs
 
 
-def rate_ratios(figures, key, lifelike=False):
+def rate_ratios(figures, key, group=""):
     result = {}
-    for name, ours, theirs in shown(figures, key, lifelike):
+    for name, ours, theirs in shown(figures, key, group):
         result[name] = ours["samples_per_second"]["median"] / theirs["samples_per_second"]["median"]
     return result
 
 
-def efficiency_ratios(figures, key, lifelike=False):
+def efficiency_ratios(figures, key, group=""):
     result = {}
-    for name, ours, theirs in shown(figures, key, lifelike):
+    for name, ours, theirs in shown(figures, key, group):
         if ours.get("errors") and theirs.get("errors"):
             pairs = [(record["errors"], record["seconds"]) for record in (ours, theirs)]
             result[name] = estimates.efficiency_ratio(*pairs)["value"]
@@ -274,10 +274,17 @@ _AGAINST_OTHERS = (
     ),
     lambda f: _ratios("efficiency against Cycles", "6x in geometric mean", efficiency_ratios(f, "cycles"), 6.0, None),
     lambda f: _ratios(
-        "lifelike scenes: samples/s against Cycles", "3x in geometric mean", rate_ratios(f, "cycles", True), 3.0, None
+        "lifelike scenes: samples/s against Cycles", "3x in geometric mean", rate_ratios(f, "cycles", "lifelike"), 3.0, None
     ),
     lambda f: _ratios(
-        "lifelike scenes: efficiency against Cycles", "5x in geometric mean", efficiency_ratios(f, "cycles", True), 5.0, None
+        "lifelike scenes: efficiency against Cycles",
+        "5x in geometric mean",
+        efficiency_ratios(f, "cycles", "lifelike"),
+        5.0,
+        None,
+    ),
+    lambda f: _ratios(
+        "motion blur: efficiency against Cycles", "3x on every scene", efficiency_ratios(f, "cycles", "moving"), None, 3.0
     ),
     lambda f: _ratios(
         "efficiency against Mitsuba llvm_ad_rgb",

@@ -46,12 +46,17 @@ class Scene:
     reference: int = 1024
     renderers: tuple = tuple(renderer.key for renderer in RENDERERS)
     exact: bool = False  # it has exact shapes, in place of which Cycles would trace meshes
-    lifelike: bool = False  # it resembles artists' files; such scenes have goals of their own
+    # Scenes with goals of their own: "lifelike" resemble artists' files, "moving" ones are blurred by motion.
+    group: str = ""
 
 
 def _lifelike(name, title):
     size = {"width": 512, "height": 384, "samples": 32, "reference": 512}
-    return Scene(name, title, **size, renderers=("lancer", "cycles"), lifelike=True)
+    return Scene(name, title, **size, renderers=("lancer", "cycles"), group="lifelike")
+
+
+def _moving(name, title):
+    return replace(_lifelike(name, title), group="moving")
 
 
 SCENES = (
@@ -72,6 +77,8 @@ SCENES = (
     _lifelike("daylight", "a million triangles lit through windows, with passes"),
     _lifelike("product", "a product between softboxes, with passes"),
     _lifelike("foliage", "a wood of cut-out leaves, with passes"),
+    _moving("runner", "a running character, motion blur"),
+    _moving("flight", "the camera flies through the wood, motion blur"),
     # One feature each, which the other scenes lack.
     Scene("wax", "a head of wax, light below its surface", renderers=("lancer", "cycles")),
     Scene("sun", "columns under sky and sun", renderers=("lancer", "cycles")),

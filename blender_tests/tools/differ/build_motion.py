@@ -1,6 +1,6 @@
 """Keyframes around the frame that is rendered, and the shutter that opens there."""
 
-from scenes.parity import motion
+from scenes import moving
 
 _FRAME = 1
 
@@ -16,13 +16,13 @@ def build_motion(scene, owner, fields):
         first, last = ([x + sign * y for x, y in zip(value, by, strict=True)] for sign in (-1, 1))
     else:
         first, last = value - by, value + by
-    motion.animate(owner, fields["path"], first, last)
+    moving.animate(owner, fields["path"], first, last)
     for setting, chosen in fields.get("cycles", {}).items():
         setattr(owner.cycles, setting, chosen)
     scene.frame_set(_FRAME)
 
 
 def build_shutter(scene, fields):
-    motion.open_shutter(scene, fields["frames"], fields.get("position"))
+    moving.open_shutter(scene, fields["frames"], fields.get("position"))
     if "rolling" in fields:
         scene.cycles.rolling_shutter_type, scene.cycles.rolling_shutter_duration = "TOP", fields["rolling"]
