@@ -9,6 +9,8 @@ ABI_VERSION = 15
 MOST_NODE_RAYS = 128
 MOST_NODES = 4096
 DEEPEST_RECURSION = 16
+MOST_MATTES = 64
+PASS_SPAN = 4096
 NODE_STEADY = 2147483648
 SKY_WIDTH = 512
 
@@ -52,6 +54,7 @@ class Struct(IntEnum):
     PORTAL = 24
     MADE = 25
     MOTION = 26
+    OUTPUT = 27
 
 
 class NormalDomain(IntEnum):
@@ -605,7 +608,27 @@ class Pass(IntEnum):
     HALVES = 24
     ALBEDO_HALVES = 25
     NORMAL_HALVES = 26
+    SPECULAR_ALBEDO = 27
+    ROUGHNESS = 28
 
     @property
     def channels(self):
-        return (4, 1, 3, 3, 3, 1, 1, 3, 1, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 1, 1, 3, 3, 3)[self]
+        return (4, 1, 3, 3, 3, 1, 1, 3, 1, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 1, 1, 3, 3, 3, 3, 1)[self]
+
+
+class PassKind(IntEnum):
+    """Passes without a bit in lancer_settings.passes."""
+
+    PLAIN = 0
+    OBJECT_MATTES = 1
+    MATERIAL_MATTES = 2
+    ASSET_MATTES = 3
+    LIGHT_GROUP = 4
+    AOV_COLOR = 5
+    AOV_VALUE = 6
+    SAMPLES = 7
+    RENDER_TIME = 8
+
+    @property
+    def channels(self):
+        return (0, 4, 4, 4, 3, 4, 1, 1, 1)[self]

@@ -98,6 +98,9 @@ def instances(table):
     rows["first_slot"] = table.first_slots
     rows["slot_count"] = table.slot_counts
     rows["object_index"] = table.object_indices
+    for name, column in (("object_matte", table.object_mattes), ("asset_matte", table.asset_mattes)):
+        rows[name] = 0 if column is None else column
+    rows["light_group"] = 0 if table.light_groups is None else table.light_groups
     rows["shading"] = table.shadings
     rows["name"] = offsets[table.name_indices]
     rows["hidden_from"] = table.hidden_from
@@ -159,6 +162,11 @@ def _nodes(owner):
     return {"nodes": _many(abi.Node, map(node, owner.nodes)), "node_count": len(owner.nodes)}
 
 
+def _outputs(owner):
+    rows = (_struct(abi.Output, output) for output in owner.outputs)
+    return {"outputs": _many(abi.Output, rows), "output_count": len(owner.outputs)}
+
+
 def _lobe(lobe):
     principled = None if lobe.principled is None else ctypes.pointer(_struct(abi.Principled, lobe.principled))
     return _struct(abi.Lobe, lobe, principled=principled)
@@ -172,13 +180,14 @@ def material(m):
         lobe_count=len(m.lobes),
         portals=_many(abi.Portal, (_struct(abi.Portal, portal) for portal in m.portals)),
         portal_count=len(m.portals),
+        **_outputs(m),
         **_nodes(m),
     )
 
 
 def world(w):
     ambient = (0.0, 0.0, 0.0) if w.ambient is None else w.ambient
-    return _struct(abi.World, w, ambient=ambient, use_ambient=w.ambient is not None, **_nodes(w))
+    return _struct(abi.World, w, ambient=ambient, use_ambient=w.ambient is not None, **_outputs(w), **_nodes(w))
 
 
 def light(li):

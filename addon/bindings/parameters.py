@@ -5,11 +5,12 @@ from __future__ import annotations
 import dataclasses
 
 from .enums import NodeKind
-from .shading import Lobe, Material, NodeRef, Portal, Principled
+from .shading import Lobe, Material, NodeRef, Output, Portal, Principled
 
 _MATERIAL = Material.PARAMETERS
 _LOBE = Lobe.PARAMETERS
 _PORTAL = Portal.PARAMETERS
+_OUTPUT = Output.PARAMETERS
 _PRINCIPLED = Principled.PARAMETERS
 
 
@@ -49,7 +50,7 @@ def kinds_of_sources(nodes, value):
 def map_parameters(material, change):
     """Return the material with every parameter replaced by change(owner, name, value), or itself if none changes.
 
-    owner: "material", "lobe", "principled" or "portal".
+    owner: "material", "lobe", "principled", "portal" or "output".
     """
 
     def mapped(record, owner, names):
@@ -65,12 +66,11 @@ def map_parameters(material, change):
     changes = mapped(material, "material", _MATERIAL)
     if any(new is not old for new, old in zip(lobes, material.lobes, strict=True)):
         changes["lobes"] = tuple(lobes)
-    portals = [
-        dataclasses.replace(portal, **inner) if (inner := mapped(portal, "portal", _PORTAL)) else portal
-        for portal in material.portals
-    ]
-    if any(new is not old for new, old in zip(portals, material.portals, strict=True)):
-        changes["portals"] = tuple(portals)
+    for name, owner, names in (("portals", "portal", _PORTAL), ("outputs", "output", _OUTPUT)):
+        old = getattr(material, name)
+        new = [dataclasses.replace(item, **inner) if (inner := mapped(item, owner, names)) else item for item in old]
+        if any(one is not other for one, other in zip(new, old, strict=True)):
+            changes[name] = tuple(new)
     return dataclasses.replace(material, **changes) if changes else material
 
 

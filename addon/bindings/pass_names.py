@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from .enums import Pass
+from .enums import Pass, PassKind
 
 
 class PassName(NamedTuple):
@@ -36,5 +36,15 @@ NAMES = {
     Pass.DENOISING_NORMAL: PassName("Denoising Normal", "Denoising Normal", "XYZ"),
     Pass.ALBEDO: PassName("Denoising Albedo", "Denoising Albedo", "RGB"),
     Pass.DENOISING_DEPTH: PassName("Denoising Depth", "Denoising Depth", "Z"),
+    Pass.SPECULAR_ALBEDO: PassName("Denoising Specular Albedo", "Denoising Specular Albedo", "RGB"),
+    Pass.ROUGHNESS: PassName("Denoising Roughness", "Denoising Roughness", "X"),
     Pass.ERROR: PassName("Lancer Error", "Lancer Error", "X"),
 }
+# The beginnings of the names of Cryptomatte's passes, which two digits follow. OpenEXR keeps channels with small letters as
+# they are where it compresses others with losses.
+CRYPTOMATTES = {
+    PassKind.OBJECT_MATTES: "CryptoObject",
+    PassKind.MATERIAL_MATTES: "CryptoMaterial",
+    PassKind.ASSET_MATTES: "CryptoAsset",
+}
+CRYPTOMATTE_CHANNELS = "rgba"

@@ -17,6 +17,7 @@ import numpy as np
 from . import abi, marshal
 from .abi import LancerError, Pass, Status, check, load_library
 from .handle import Handle
+from .numbered_pass import NumberedPass
 from .parts import SessionParts
 from .probes import SessionProbes, microfacet, pixel_filter, sampler
 from .scene import STEP, Cancelled, Scene
@@ -199,10 +200,15 @@ class Session(Handle, SessionParts, SessionProbes):
                 self.cancel()
 
     def read(self, which=Pass.COMBINED):
-        """Return one pass of the region as (height, width, channels) float32; row 0 is the bottom row."""
-        which = Pass(which)
+        """Return one pass of the region as (height, width, channels) float32; row 0 is the bottom row.
+
+        which: a Pass, or a NumberedPass.
+        """
+        is_numbered = isinstance(which, NumberedPass)
+        which = which if is_numbered else Pass(which)
+        address = which.address if is_numbered else int(which)
         out = np.empty((self.camera.region_height, self.camera.region_width, which.channels), np.float32)
-        self._check(self.library.lancer_session_read(self.handle, int(which), out.ctypes.data, out.size))
+        self._check(self.library.lancer_session_read(self.handle, address, out.ctypes.data, out.size))
         return out
 
     def statistics(self):

@@ -124,18 +124,30 @@ class Portal(Parameters, struct=structs.Portal):
 
 @register
 @dataclass(frozen=True, eq=False)
+class Output(Parameters, struct=structs.Output):
+    """A value that goes into the pass AOV_COLOR or AOV_VALUE of this number."""
+
+    number: int = 0
+    is_color: bool = True
+
+
+@register
+@dataclass(frozen=True, eq=False)
 class Material(Parameters, struct=structs.Material):
     name: str = ""
     lobes: tuple[Lobe, ...] = (Lobe(),)
     portals: tuple[Portal, ...] = ()
+    outputs: tuple[Output, ...] = ()
     nodes: tuple[Node, ...] = ()
     flags: int = 0  # MaterialFlag
     material_index: int = 0
+    matte: int = 0  # id of its matte; 0 = none
 
     def __post_init__(self):
         super().__post_init__()
         self.set("lobes", tuple(self.lobes))
         self.set("portals", tuple(self.portals))
+        self.set("outputs", tuple(self.outputs))
         self.set("nodes", tuple(self.nodes))
 
 
@@ -144,6 +156,8 @@ class Material(Parameters, struct=structs.Material):
 class World(Parameters, struct=structs.World):
     radiance: object
     nodes: tuple[Node, ...] = ()
+    outputs: tuple[Output, ...] = ()
+    light_group: int = 0  # 1 is the first; 0 = none
     hidden_from: int = 0  # Ray bits
     map_resolution: int = 0
     ambient: tuple | None = None  # ambient light, which Ka reflects in CLASSIC; None: the mean of the radiance
@@ -152,4 +166,5 @@ class World(Parameters, struct=structs.World):
         super().__post_init__()
         if self.ambient is not None:
             self.vectors(ambient=3)
+        self.set("outputs", tuple(self.outputs))
         self.set("nodes", tuple(self.nodes))

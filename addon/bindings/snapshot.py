@@ -31,6 +31,7 @@ from .shading import (  # noqa: F401 - all records have one address
     Material,
     Node,
     NodeRef,
+    Output,
     Parameters,
     Portal,
     Principled,
@@ -123,6 +124,9 @@ class Instance:
     hidden_from: int = 0  # Ray bits
     flags: int = 0  # InstanceFlag bits
     terminator: float = 0.0  # cosine; 0 = shadow rays start on the triangle
+    object_matte: int = 0  # ids of its mattes; 0 = none
+    asset_matte: int = 0
+    light_group: int = 0  # of its own light, 1 is the first; 0 = none
 
 
 @register
@@ -172,9 +176,14 @@ class InstanceTable(Record):
     hidden_from: np.ndarray | None = None  # zeros if not given
     flags: np.ndarray | None = None
     terminators: np.ndarray | None = None  # float
+    # Ids of mattes and numbers of light groups, see Instance; None: none of any instance.
+    object_mattes: np.ndarray | None = None
+    asset_mattes: np.ndarray | None = None
+    light_groups: np.ndarray | None = None
     infos: np.ndarray | None = None  # (n, 5): colour, alpha and random number for OBJECT_INFO; None: white and 0
     attributes: tuple[ObjectAttribute, ...] = ()
     names: tuple[str, ...] = ()
+    asset_names: tuple[str, ...] = ()  # of which asset_mattes has the ids
     slots: np.ndarray = field(default_factory=lambda: np.empty(0, np.uint32))
     motions: tuple[InstanceMotion, ...] = ()  # one for each number of keys
 
@@ -189,10 +198,14 @@ class InstanceTable(Record):
         self.set("terminators", array(self.terminators, np.float32, (count,), "terminators"))
         if self.infos is not None:
             self.set("infos", array(self.infos, np.float32, (count, 5), "infos"))
+        for name in ("object_mattes", "asset_mattes", "light_groups"):
+            if getattr(self, name) is not None:
+                self.set(name, array(getattr(self, name), np.uint32, (count,), name))
         for name in _INSTANCE_COLUMNS:
             self.set(name, array(getattr(self, name), np.uint32, (count,), name))
         self.set("slots", array(self.slots, np.uint32, (None,), "slots"))
         self.set("names", tuple(self.names))
+        self.set("asset_names", tuple(self.asset_names))
         self.set("attributes", tuple(self.attributes))
         self.set("motions", tuple(self.motions))
         for motion in self.motions:
@@ -230,6 +243,9 @@ class InstanceTable(Record):
             hidden_from=[i.hidden_from for i in instances],
             flags=[i.flags for i in instances],
             terminators=[i.terminator for i in instances],
+            object_mattes=[i.object_matte for i in instances],
+            asset_mattes=[i.asset_matte for i in instances],
+            light_groups=[i.light_group for i in instances],
             names=tuple(names),
             slots=slots,
         )
@@ -259,6 +275,7 @@ class Light(Parameters, struct=structs.Light):
     specular_color: tuple = (1.0, 1.0, 1.0)
     hidden_from: int = Ray.CAMERA  # bits; by default lamps are invisible to the camera
     no_shadow: bool = False
+    light_group: int = 0  # 1 is the first; 0 = none
     strength: object
     nodes: tuple[Node, ...] = ()
 

@@ -60,6 +60,9 @@ class Instance(Structure):
         ("name", c_uint32),
         ("hidden_from", c_uint32),
         ("flags", c_uint32),
+        ("object_matte", c_uint32),
+        ("asset_matte", c_uint32),
+        ("light_group", c_uint32),
         ("terminator", c_float),
     ]
 
@@ -183,17 +186,30 @@ class Portal(Structure):
     ]
 
 
+class Output(Structure):
+    """A value of a surface or of the world that goes into a pass AOV_COLOR or AOV_VALUE."""
+
+    _fields_ = [
+        ("number", c_uint32),
+        ("is_color", c_uint32),
+        ("value", Parameter),
+    ]
+
+
 class Material(Structure):
     _fields_ = [
         ("name", c_char_p),
         ("lobes", POINTER(Lobe)),
         ("nodes", POINTER(Node)),
         ("portals", POINTER(Portal)),
+        ("outputs", POINTER(Output)),
         ("lobe_count", c_uint32),
         ("node_count", c_uint32),
         ("material_index", c_uint32),
         ("flags", c_uint32),
         ("portal_count", c_uint32),
+        ("output_count", c_uint32),
+        ("matte", c_uint32),
         ("reserved", c_uint32),
         ("emission", Parameter),
         ("transmittance", Parameter),
@@ -227,6 +243,7 @@ class Light(Structure):
         ("spread", c_float),
         ("hidden_from", c_uint32),
         ("no_shadow", c_uint32),
+        ("light_group", c_uint32),
         ("falloff", c_uint32),
         ("falloff_radius", c_float),
         ("ambient_color", c_float * 3),
@@ -240,12 +257,15 @@ class World(Structure):
 
     _fields_ = [
         ("nodes", POINTER(Node)),
+        ("outputs", POINTER(Output)),
         ("node_count", c_uint32),
         ("hidden_from", c_uint32),
         ("radiance", Parameter),
         ("ambient", c_float * 3),
         ("use_ambient", c_uint32),
         ("map_resolution", c_uint32),
+        ("light_group", c_uint32),
+        ("output_count", c_uint32),
         ("reserved", c_uint32),
     ]
 
@@ -316,6 +336,10 @@ class Settings(Structure):
         ("blended_features", c_uint32),
         ("features", c_uint32),
         ("passes", c_uint32),
+        ("mattes", c_uint32),
+        ("light_groups", c_uint32),
+        ("aov_colors", c_uint32),
+        ("aov_values", c_uint32),
         ("threads", c_uint32),
         ("tile_size", c_uint32),
         ("refines", c_uint32),
@@ -525,6 +549,7 @@ STRUCTS = {
     Struct.PORTAL: Portal,
     Struct.MADE: Made,
     Struct.MOTION: Motion,
+    Struct.OUTPUT: Output,
 }
 
 # Kind and default of each parameter, from lancer.h.
@@ -582,6 +607,9 @@ PARAMETERS = {
         "position": ("vector", (0.0, 0.0, 0.0)),
         "direction": ("vector", (0.0, 0.0, 0.0)),
     },
+    Output: {
+        "value": ("vector", (0.0, 0.0, 0.0)),
+    },
     Material: {
         "emission": ("color", (0.0, 0.0, 0.0)),
         "transmittance": ("color", (0.0, 0.0, 0.0)),
@@ -624,6 +652,10 @@ SETTINGS = {
     "blended_features": ("switch", False),
     "features": ("choice", 0),
     "passes": ("bits", 1),
+    "mattes": ("bits", 0),
+    "light_groups": ("number", 0),
+    "aov_colors": ("number", 0),
+    "aov_values": ("number", 0),
     "threads": ("number", 0),
     "tile_size": ("number", 0),
     "refines": ("switch", False),

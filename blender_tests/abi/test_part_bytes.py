@@ -64,7 +64,7 @@ def test_pictures_follow_from_the_sums(read_and_told):
     # Light of a component is divided by its colour, and mist and occlusion are clamped.
     light = {which for which in read.summed if which in COMPONENTS and color_of(which) != which}
     plain = set(read.summed) - light - {Pass.MIST, Pass.AMBIENT_OCCLUSION}
-    assert Pass.COMBINED in plain and len(light) == 6 and len(plain) == 11
+    assert Pass.COMBINED in plain and len(light) == 6 and len(plain) == 13
     for which in sorted(plain):
         np.testing.assert_array_equal(read.picture(which), images[which], which.name)
     # Without sample 0, a pixel has no depth and no index.
@@ -100,8 +100,14 @@ def test_sums_follow_from_single_samples():
     assert whole.light == [sum(one.light[i] for one in single) for i in range(3)] and min(whole.light) > 0
     # The luminance of BT.709, with coefficients of 32 bits.
     weights = np.float32([0.2126, 0.7152, 0.0722]).astype(np.float64)
+    assert whole.matte_kinds == 3 and whole.extra == 3 * 4 + 4 + 1
     for number, tile in enumerate(whole.tiles):
         ones = [one.tiles[number] for one in single]
+        for kind in range(3):
+            for pixel, sums in enumerate(tile.sums[0].mattes[kind]):
+                terms = [one.sums[0].mattes[kind][pixel] for one in ones]
+                alone = {key: [of.get(key, 0.0) for of in terms] for key in set().union(*terms)}
+                assert sums == {key: (a + b) + (c + d) for key, (a, b, c, d) in alone.items()} and list(sums) == sorted(sums)
         channels = [one.sums[0].channels for one in ones]
         (sums,) = tile.sums
         np.testing.assert_array_equal(sums.channels, (channels[0] + channels[1]) + (channels[2] + channels[3]))

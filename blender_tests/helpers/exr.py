@@ -54,6 +54,21 @@ def read(path, layer=None):
     return _passes(parts, layer)
 
 
+def attributes(path):
+    """Return the texts of the file's first header, by name."""
+    with open(path, "rb") as file:
+        data = file.read()
+    _, version = struct.unpack_from("<ii", data)
+    header = _headers(data, bool(version & _MULTIPART))[0][0]
+    texts = {}
+    for name, value in header.items():
+        try:
+            texts[name] = value.decode()
+        except UnicodeDecodeError:
+            continue
+    return texts
+
+
 def _headers(data, multipart):
     parts, at = [], 8
     while True:

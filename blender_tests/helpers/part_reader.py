@@ -70,9 +70,10 @@ class Sums:
 
     start: int
     level: int
-    channels: np.ndarray  # (pixels, channels), double
+    channels: np.ndarray  # (pixels, channels), double; those of light groups and AOVs last
     difference: np.ndarray  # (pixels,)
     halves: np.ndarray  # (pixels, channels of the passes of halves)
+    mattes: list  # for each kind a list of {id: sum} of each pixel
 
 
 @dataclasses.dataclass
@@ -101,6 +102,10 @@ class ReadPart:
         self.rays = self._take("<4Q")
         self.light = [sum(digit << 8 * place for place, digit in enumerate(self._take("<32q"))) for _ in range(3)]
         self.summed, self.of_first, self.halves = self._passes()
+        groups, colors, values, bits = (
+            int(self.about["settings"][name]) for name in ("light_groups", "aov_colors", "aov_values", "mattes")
+        )
+        self.extra, self.matte_kinds = 3 * groups + 4 * colors + values, bin(bits).count("1")
         self.tiles = []
         while self._at < len(self._data) - 8:
             self.tiles.append(self._tile())
@@ -138,9 +143,10 @@ class ReadPart:
         sums = [
             Sums(
                 *head,
-                self._array("<f8", pixels, _width(self.summed)),
+                self._array("<f8", pixels, _width(self.summed) + self.extra),
                 self._array("<f4", pixels),
                 self._array("<f4", pixels, _width(self.halves)),
+                [self._mattes(pixels) for _ in range(self.matte_kinds)],
             )
             for head in heads
         ]
@@ -148,6 +154,11 @@ class ReadPart:
         first = self._array("<f4", pixels, _width(self.of_first)) if has_first else None
         counts = self._take(f"<{dropped}Q")
         return Tile(number, sums, brightest, first, counts, self._take("<3I") if dropped else ())
+
+    def _mattes(self, pixels):
+        ends = self._array("<u4", pixels).tolist()
+        ids, sums = self._array("<u4", ends[-1]).tolist(), self._array("<f8", ends[-1]).tolist()
+        return [dict(zip(ids[begin:end], sums[begin:end], strict=True)) for begin, end in zip([0, *ends], ends, strict=False)]
 
     def place(self, number):
         """Return (y, x) of the pixels of a tile: the cells of one colour of a square that is a chessboard, row by row."""

@@ -16,7 +16,7 @@ COUNTED = (
     "invalid_samples", "invalid_x", "invalid_y", "invalid_sample",
 )  # fmt: skip
 # Values other than the defaults for settings of each kind of structs.SETTINGS; amounts are exact as 32 bits.
-OTHER_VALUES = {"choice": 1, "number": 7, "amount": 0.375, "width": 1.75, "switch": True}
+OTHER_VALUES = {"choice": 1, "number": 7, "amount": 0.375, "width": 1.75, "switch": True, "bits": 5}
 
 
 def room(samples=11, size=(21, 18), **settings):

@@ -4,9 +4,21 @@ import dataclasses
 
 import numpy as np
 
-from addon.bindings.abi import CameraKind, InstanceKind, LightKind, LobeKind, Pass
+from addon.bindings.abi import CameraKind, InstanceKind, LightKind, LobeKind, Pass, PassKind
+from addon.bindings.numbered_pass import MATTES, NumberedPass, extras
 from addon.bindings.session import Session
-from addon.bindings.snapshot import Camera, Instance, InstanceTable, Light, Lobe, Material, MeshData, SceneSnapshot, Settings
+from addon.bindings.snapshot import (
+    Camera,
+    Instance,
+    InstanceTable,
+    Light,
+    Lobe,
+    Material,
+    MeshData,
+    Output,
+    SceneSnapshot,
+    Settings,
+)
 
 
 def move(x=0.0, y=0.0, z=0.0):
@@ -126,6 +138,14 @@ def two_planes(distance=2.0, albedo=0.8, emission=1.0, **settings):
     return scene([plane(0), plane(1, ceiling)], materials, camera=camera, **settings)
 
 
+# The passes of a showroom beside those of Pass whose values follow from the samples alone.
+EXTRAS = (
+    *(NumberedPass(kind, level) for kind in MATTES for level in range(2)),
+    *(NumberedPass(PassKind.LIGHT_GROUP, group) for group in range(4)),
+    *(NumberedPass(kind) for kind in (PassKind.AOV_COLOR, PassKind.AOV_VALUE, PassKind.SAMPLES)),
+)
+
+
 def showroom(pixels=32, **settings):
     """Return a scene with many kinds of objects, for comparing configurations."""
     materials = [
@@ -149,11 +169,17 @@ def showroom(pixels=32, **settings):
         ),
         Instance(kind=InstanceKind.CONE, matrix=move(-2.2, 1.0, 0.7) @ scale(0.6, 0.6, 0.7), materials=(0,), name="cone"),
     ]
+    # Mattes, light groups and outputs of all of them.
+    values = Output(value=(0.25, -2.0, 1e3)), Output(is_color=False, value=(0.7, 0.0, 0.0))
+    materials = [dataclasses.replace(item, matte=7 + n, outputs=values) for n, item in enumerate(materials)]
+    instances = [
+        dataclasses.replace(item, object_matte=n + 1, asset_matte=n % 3 + 1, light_group=1) for n, item in enumerate(instances)
+    ]
     lights = [
-        Light("point", move(2, -3, 4), LightKind.POINT, emission=(20, 20, 25), radius=0.2),
-        Light("area", move(-3, -2, 4) @ rotate_y(-0.6), LightKind.AREA, emission=(3, 3, 3), size=(1, 0.5)),
-        Light("sun", rotate_x(0.7), LightKind.SUN, emission=(0.5, 0.5, 0.4), sun_angle=0.05),
-        Light("spot", move(0, 0, 5), LightKind.SPOT, emission=(10, 5, 5), spot_angle=0.8, spot_blend=0.3),
+        Light("point", move(2, -3, 4), LightKind.POINT, emission=(20, 20, 25), radius=0.2, light_group=2),
+        Light("area", move(-3, -2, 4) @ rotate_y(-0.6), LightKind.AREA, emission=(3, 3, 3), size=(1, 0.5), light_group=3),
+        Light("sun", rotate_x(0.7), LightKind.SUN, emission=(0.5, 0.5, 0.4), sun_angle=0.05, light_group=2),
+        Light("spot", move(0, 0, 5), LightKind.SPOT, emission=(10, 5, 5), spot_angle=0.8, spot_blend=0.3, light_group=3),
     ]
     camera = Camera(
         matrix=look_at((1.5, -6.0, 2.5), (0, 0, 0.8)),
@@ -163,8 +189,9 @@ def showroom(pixels=32, **settings):
         lens_radius=0.02,
         focal_distance=6.0,
     )
-    defaults = {"samples": 4, "max_bounces": 6, "passes": tuple(Pass)}
-    return scene(instances, materials, lights, [quad(1.5)], (0.1, 0.15, 0.2), camera, **{**defaults, **settings})
+    defaults = {"samples": 4, "max_bounces": 6, "passes": tuple(Pass), **extras(EXTRAS)}
+    shown = scene(instances, materials, lights, [quad(1.5)], (0.1, 0.15, 0.2), camera, **{**defaults, **settings})
+    return dataclasses.replace(shown, world=dataclasses.replace(shown.world, light_group=4))
 
 
 def overflowing(side=16, **settings):

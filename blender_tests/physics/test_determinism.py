@@ -27,7 +27,8 @@ def bits(snapshot, pieces=None):
                 pass
             first += count
         assert first == snapshot.settings.samples
-        return {which.name: session.read(which).tobytes() for which in Pass}
+        plain = {which.name: session.read(which).tobytes() for which in Pass}
+        return plain | {str(which): session.read(which).tobytes() for which in tiny_scenes.EXTRAS}
 
 
 def picture(samples=4, **settings):

@@ -38,6 +38,8 @@ extern "C" {
 #define LANCER_MOST_NODE_RAYS 128u /* of an OCCLUSION or a BEVEL */
 #define LANCER_MOST_NODES 4096u
 #define LANCER_DEEPEST_RECURSION 16u
+#define LANCER_MOST_MATTES 64u /* of a kind in a pixel: those with the largest shares stay */
+#define LANCER_PASS_SPAN 4096u /* see lancer_pass_kind */
 
 typedef uint64_t lancer_scene;
 typedef uint64_t lancer_session;
@@ -90,6 +92,7 @@ typedef enum lancer_struct {
   LANCER_STRUCT_PORTAL,
   LANCER_STRUCT_MADE,
   LANCER_STRUCT_MOTION,
+  LANCER_STRUCT_OUTPUT,
   LANCER_STRUCT_COUNT
 } lancer_struct;
 /* Returns sizeof the struct with this lancer_struct number, or 0 for an unknown number, so that a caller can refuse a stale
@@ -181,6 +184,9 @@ typedef struct lancer_instance {
   uint32_t name;         /* offset of its NUL-terminated name in the names of lancer_scene_add_instances */
   uint32_t hidden_from;  /* LANCER_RAY_* bits */
   uint32_t flags;        /* LANCER_INSTANCE_* bits */
+  uint32_t object_matte; /* id of its object matte: any number but 0; 0 = none */
+  uint32_t asset_matte;  /* the same of its asset matte */
+  uint32_t light_group;  /* of the light that it emits: 1 ... settings.light_groups; 0 = none */
   float terminator;      /* smooth meshes: below this cosine to the light, a shadow ray starts on the curved surface that the
                             normals describe, as with Blender's shadow terminator offset; 0 = on the triangle */
 } lancer_instance;
@@ -773,6 +779,15 @@ typedef struct lancer_portal {
   lancer_parameter direction; /* [vector 0] world, of any length; 0, 0, 0: straight on */
 } lancer_portal;
 
+/* A value of a surface or of the world that goes into a pass AOV_COLOR or AOV_VALUE. As in Cycles, each surface that a ray of
+ * the camera passes straight gives its value, up to the first with the opacity settings.alpha_threshold. The pass has the mean
+ * over the samples. */
+typedef struct lancer_output {
+  uint32_t number;        /* of the pass */
+  uint32_t is_color;      /* 1: AOV_COLOR, 0: AOV_VALUE */
+  lancer_parameter value; /* [vector 0] */
+} lancer_output;
+
 enum lancer_material_flag {
   LANCER_MATERIAL_NO_BUMP_CORRECTION = 1, /* do not soften the terminator of bump-mapped surfaces */
   LANCER_MATERIAL_NOT_A_LIGHT = 2,        /* emits, but is never sampled as a light: only scattered rays find it */
@@ -785,11 +800,14 @@ typedef struct lancer_material {
   const lancer_lobe *lobes;
   const lancer_node *nodes;
   const lancer_portal *portals;
+  const lancer_output *outputs;
   uint32_t lobe_count;     /* at most 64; 0 is a black surface */
   uint32_t node_count;     /* at most LANCER_MOST_NODES */
   uint32_t material_index; /* value of the material index pass */
   uint32_t flags;          /* LANCER_MATERIAL_* bits */
   uint32_t portal_count;   /* at most 64 */
+  uint32_t output_count;   /* at most LANCER_MOST_NODES */
+  uint32_t matte;          /* id of its material matte: any number but 0; 0 = none */
   uint32_t reserved;
   lancer_parameter emission;      /* [color 0] radiance, both sides; may be negative */
   lancer_parameter transmittance; /* [color 0] factor of light that passes straight through; lobes and emission are not
@@ -851,6 +869,7 @@ typedef struct lancer_light {
   float spread;      /* AREA: full angle of emission, pi = the whole front hemisphere */
   uint32_t hidden_from;   /* LANCER_RAY_* bits; SHADOW has no effect */
   uint32_t no_shadow;     /* 1: casts no shadows */
+  uint32_t light_group;   /* 1 ... settings.light_groups; 0 = none */
   uint32_t falloff;       /* CLASSIC: LANCER_FALLOFF_* */
   float falloff_radius;   /* CLASSIC: r of lancer_falloff */
   float ambient_color[3]; /* CLASSIC: factors of emission for the ambient, diffuse and specular sums; 1, 1, 1 = one colour */
@@ -894,6 +913,7 @@ LANCER_API lancer_status lancer_scene_add_image(lancer_scene scene, const lancer
  * OBJECT, POSITION) or its opposite, as on a surface that faces the viewer (normals, INCOMING, REFLECTION). */
 typedef struct lancer_world {
   const lancer_node *nodes;
+  const lancer_output *outputs;
   uint32_t node_count;
   uint32_t hidden_from;      /* LANCER_RAY_* bits */
   lancer_parameter radiance; /* [color 0] may be negative */
@@ -903,6 +923,8 @@ typedef struct lancer_world {
   uint32_t map_resolution;   /* width of the map that samples directions where the radiance varies; 0 = by its images, 1024
                                 without any. At most 65536, but no map is wider than 2048: finer detail is averaged from up to
                                 8192 x 4096 evaluations */
+  uint32_t light_group;      /* 1 ... settings.light_groups; 0 = none */
+  uint32_t output_count;     /* at most LANCER_MOST_NODES */
   uint32_t reserved;
 } lancer_world;
 /* The world is black until set. */
@@ -1051,7 +1073,29 @@ enum lancer_pass {
   LANCER_PASS_HALVES = 24,        /* [3] of COMBINED */
   LANCER_PASS_ALBEDO_HALVES = 25, /* [3] */
   LANCER_PASS_NORMAL_HALVES = 26, /* [3] of DENOISING_NORMAL */
-  LANCER_PASS_COUNT = 27
+  /* For denoising by others, of the first surface, by the rule of Blender 5.2. */
+  LANCER_PASS_SPECULAR_ALBEDO = 27, /* [3] albedo of its lobes by their mirror-like share, mean */
+  LANCER_PASS_ROUGHNESS = 28,       /* [1] of its lobes, as of shader nodes, mean */
+  LANCER_PASS_COUNT = 29
+};
+
+/* Passes without a bit in lancer_settings.passes: the number of such a pass is its kind times LANCER_PASS_SPAN plus its number
+ * within the kind. Light passes by groups are those of PATH; the other integrators leave them 0. */
+enum lancer_pass_kind {
+  LANCER_PASS_KIND_PLAIN = 0, /* those of lancer_pass */
+  /* The mattes of a pixel, by falling share; number n holds the id and the share of the matte 2 n, then of 2 n + 1; 0, 0: none.
+   * An id is given as the float that has its bits. A surface's share is its opacity times the light that passes to the camera.
+   */
+  LANCER_PASS_KIND_OBJECT_MATTES = 1,   /* [4] kept if settings.mattes has the bit 1 */
+  LANCER_PASS_KIND_MATERIAL_MATTES = 2, /* [4] bit 2 */
+  LANCER_PASS_KIND_ASSET_MATTES = 3,    /* [4] bit 4 */
+  LANCER_PASS_KIND_LIGHT_GROUP = 4,     /* [3] light of the group number + 1, as in COMBINED; behind a transparent film also the
+                                           world's own, if ENVIRONMENT is kept */
+  LANCER_PASS_KIND_AOV_COLOR = 5,       /* [4] see lancer_output; the fourth counts the surfaces that gave a value */
+  LANCER_PASS_KIND_AOV_VALUE = 6,       /* [1] */
+  LANCER_PASS_KIND_SAMPLES = 7,         /* [1] samples of the pixel. Always kept */
+  LANCER_PASS_KIND_RENDER_TIME = 8      /* [1] milliseconds of this session for the pixel: an equal share of its tile's. Always
+                                           kept */
 };
 
 /* How a scene is rendered. Each comment begins with kind, default and, where there is one, the largest value: a choice of an
@@ -1089,7 +1133,11 @@ typedef struct lancer_settings {
                                 over surfaces by their share of matt lobes, as in 5.2 */
   uint32_t features;         /* [choice 0 1] LANCER_FEATURES_SCENE: only the work that the scene requires; ALL: work for all
                                 features. Same pixels */
-  uint32_t passes;           /* [bits 1 134217727] 1u << LANCER_PASS_*; COMBINED is always kept */
+  uint32_t passes;           /* [bits 1 536870911] 1u << LANCER_PASS_*; COMBINED is always kept */
+  uint32_t mattes;           /* [bits 0 7] kinds of mattes: 1 objects, 2 materials, 4 assets */
+  uint32_t light_groups;     /* [number 0 1024] number of groups of lights, each with a pass */
+  uint32_t aov_colors;       /* [number 0 1024] number of passes AOV_COLOR */
+  uint32_t aov_values;       /* [number 0 1024] number of passes AOV_VALUE */
   uint32_t threads;          /* [number 0 1024] 0 = one per processor */
   uint32_t tile_size;        /* [number 0] pixels; 0 = automatic. Changes no pixel */
   uint32_t refines;          /* [switch 0] the session refines, or renders or joins parts of a picture */
@@ -1143,8 +1191,8 @@ LANCER_API lancer_status lancer_session_stop(lancer_session session);
  * (lancer_session_wait waits for it) and LANCER_CANCELLED when nothing is left to double. Needs settings.refines, and a power
  * of two as the number of samples of every pixel. */
 LANCER_API lancer_status lancer_session_refine(lancer_session session, double target, double confidence);
-/* Copies one pass of the region: [region_height][region_width][channels]; float_count must be exactly that. Allowed while
- * rendering. */
+/* Copies one pass of the region: [region_height][region_width][channels]; float_count must be exactly that. pass: of
+ * lancer_pass, or as lancer_pass_kind says. Allowed while rendering. */
 LANCER_API lancer_status lancer_session_read(lancer_session session, uint32_t pass, float *out, size_t float_count);
 LANCER_API lancer_status lancer_session_statistics(lancer_session session, lancer_statistics *statistics);
 
@@ -1203,9 +1251,11 @@ LANCER_API lancer_status lancer_combine_denoised(uint32_t width, uint32_t height
  *   for each tile, by rising number:
  *     u32 tile, u32 n, u32 d, u32 m (1 if the tile has sample 0, else 0)
  *     n times u32 start, u32 level: sums of the samples start ... start + 2^level - 1, by rising start, a multiple of 2^level
- *     n times f64[pixels][channels] sums of the summed passes in order of pass, as film_passes.cpp lists them; f32[pixels]
- *       difference of the mean luminances of both halves (0 if level is 0); f32[pixels][halves] the same of each colour
- *       that passes of halves tell, three numbers for each such pass, in order of pass
+ *     n times f64[pixels][channels] sums of the summed passes in order of pass, as film_passes.cpp lists them, then of light
+ *       groups, AOV_COLOR and AOV_VALUE; f32[pixels] difference of the mean luminances of both halves (0 if level is 0);
+ *       f32[pixels][halves] the same of each colour that passes of halves tell, three numbers for each such pass, in order
+ *       of pass; for each kind of mattes u32[pixels] number of mattes up to the end of each pixel, then of all mattes u32 id,
+ *       by rising id within a pixel, and f64 sum of shares
  *     f32[pixels] largest absolute luminance of a sample
  *     m times f32[pixels][channels] values of sample 0
  *     d times u64 number of dropped samples, by the bit width of the sample's number

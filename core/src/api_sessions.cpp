@@ -151,13 +151,11 @@ lancer_status lancer_session_read(lancer_session session, uint32_t pass, float *
     const auto object = session_of(session);
     require(out, "read: out");
     const std::lock_guard lock(object->mutex);
-    if (pass >= LANCER_PASS_COUNT)
-      bad_argument("read: pass " + std::to_string(pass) + " >= " + std::to_string(LANCER_PASS_COUNT) + " passes");
     const Film &film = object->session.film();
-    const size_t expected = size_t(film.width()) * film.height() * channels(static_cast<Pass>(pass));
+    const size_t expected = size_t(film.width()) * film.height() * Session::channels_of(pass);
     if (float_count != expected)
       bad_argument("read: out has " + std::to_string(float_count) + " floats, but the pass has " + std::to_string(expected));
-    object->session.read(static_cast<Pass>(pass), std::span(out, float_count));
+    object->session.read(pass, std::span(out, float_count));
     return LANCER_OK;
   });
 }

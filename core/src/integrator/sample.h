@@ -3,6 +3,7 @@
 
 #include "compile/scene.h"
 #include "integrator/exact_sum.h"
+#include "integrator/extras.h"
 #include "integrator/settings_table.h"
 #include "sampling/pixel_filter.h"
 #include "scene/camera.h"
@@ -48,6 +49,7 @@ struct IntegratorSettings {
 
   IntegratorKind kind() const { return static_cast<IntegratorKind>(integrator); }
   FilterKind filter() const { return static_cast<FilterKind>(pixel_filter); }
+  ExtraLayout extras() const { return {light_groups, aov_colors, aov_values, mattes}; }
   bool all_features() const { return features != 0; }
   // Whether glass of at most this alpha_x alpha_y leaves the film transparent.
   bool clear_glass(float alpha2) const {
@@ -83,6 +85,8 @@ struct SampleResult {
   glm::vec3 light[kLightPasses];
   glm::vec3 denoising_normal{0.0f}; // camera space
   float denoising_depth = 0.0f;
+  glm::vec3 specular_albedo{0.0f};
+  float roughness = 0.0f;
   // The hit of the camera ray.
   float depth = 1e10f; // user's units along the camera's z, of a panorama: distance; 1e10: no hit
   glm::vec3 position{0.0f};
@@ -166,11 +170,14 @@ public:
   uint64_t vertices() const { return vertices_; }
   // Returns the energy of the last batch.
   const Energy &energy() const { return energy_; }
+  // Returns the extras of the last batch, by number of its samples.
+  const Extras &extras() const { return extras_; }
 
 protected:
   RayCounts counts_;
   uint64_t vertices_ = 0;
   Energy energy_;
+  Extras extras_;
 };
 
 // scene and camera must outlive the integrator.

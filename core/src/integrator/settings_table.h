@@ -11,7 +11,8 @@ enum class Pass : uint32_t {
   Combined = 0, Depth = 1, Normal = 2, Albedo = 3, Position = 4, ObjectIndex = 5, MaterialIndex = 6, Uv = 7, Mist = 8, Emission
   = 9, Environment = 10, AmbientOcclusion = 11, DiffuseDirect = 12, DiffuseIndirect = 13, DiffuseColor = 14, GlossyDirect = 15,
   GlossyIndirect = 16, GlossyColor = 17, TransmissionDirect = 18, TransmissionIndirect = 19, TransmissionColor = 20,
-  DenoisingNormal = 21, DenoisingDepth = 22, Error = 23, Halves = 24, AlbedoHalves = 25, NormalHalves = 26
+  DenoisingNormal = 21, DenoisingDepth = 22, Error = 23, Halves = 24, AlbedoHalves = 25, NormalHalves = 26, SpecularAlbedo = 27,
+  Roughness = 28
 };
 // clang-format on
 
@@ -41,7 +42,11 @@ enum class Pass : uint32_t {
   X(Amount, mist_falloff, 2.0f, 0xffffffffu)                                                                                   \
   X(Switch, blended_features, false, 0xffffffffu)                                                                              \
   X(Choice, features, 0u, 1u)                                                                                                  \
-  X(Bits, passes, 1u, 134217727u)                                                                                              \
+  X(Bits, passes, 1u, 536870911u)                                                                                              \
+  X(Bits, mattes, 0u, 7u)                                                                                                      \
+  X(Number, light_groups, 0u, 1024u)                                                                                           \
+  X(Number, aov_colors, 0u, 1024u)                                                                                             \
+  X(Number, aov_values, 0u, 1024u)                                                                                             \
   X(Number, threads, 0u, 1024u)                                                                                                \
   X(Number, tile_size, 0u, 0xffffffffu)                                                                                        \
   X(Switch, refines, false, 0xffffffffu)

@@ -160,14 +160,20 @@ Environment::Environment(const WorldView &world, const Normalisation &normalisat
 
 glm::vec3 Environment::evaluate(const ProgramView &program, const glm::dvec3 &wi, std::span<glm::vec4> values,
                                 const Camera *camera, const glm::dvec3 *eye, const LightPath<float> &path) const {
+  run_nodes(program, world_.schedule, wi, values, camera, eye, path);
+  return value_of(world_.radiance, values);
+}
+
+void Environment::run_nodes(const ProgramView &program, ScheduleView schedule, const glm::dvec3 &wi,
+                            std::span<glm::vec4> values, const Camera *camera, const glm::dvec3 *eye,
+                            const LightPath<float> &path) const {
   NodeContext context;
   context.normalisation = normalisation_;
   context.camera = camera;
   context.wo = glm::vec3(-wi);
   context.eye = eye;
   context.path = path;
-  run(program, world_.schedule, context, values);
-  return value_of(world_.radiance, values);
+  run(program, schedule, context, values);
 }
 
 void Environment::make_maps(const BuildContext &context, bool glass) {

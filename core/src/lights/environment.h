@@ -47,6 +47,7 @@ public:
   bool is_light() const { return !maps_->above_mean.empty(); }
   const glm::vec3 &constant() const { return constant_; }
   uint32_t hidden_from() const { return hidden_from_; }
+  uint32_t light_group() const { return world_.light_group; }
   // Largest angle over which images with mipmaps are averaged for other rays than the camera's: as in Cycles, a cell of the map
   // that Cycles samples.
   float finest() const { return finest_; }
@@ -59,6 +60,11 @@ public:
   glm::vec3 radiance(const glm::dvec3 &wi, std::span<glm::vec4> values, const Camera *camera, const glm::dvec3 *eye = nullptr,
                      const LightPath<float> &path = {}) const {
     return varies() ? evaluate(wi, values, camera, eye, path) : constant_;
+  }
+  // Computes the nodes of the world's outputs. Arguments as of radiance().
+  void run_outputs(const glm::dvec3 &wi, std::span<glm::vec4> values, const Camera *camera, const glm::dvec3 *eye,
+                   const LightPath<float> &path) const {
+    run_nodes(world_.program, world_.output_nodes, wi, values, camera, eye, path);
   }
   // Returns pdf 0 where the environment is not a light. transmits: whether the surface may transmit light.
   LightSample sample(const glm::vec2 &u, std::span<glm::vec4> values, const Camera *camera, bool transmits) const;
@@ -82,6 +88,8 @@ private:
   }
   glm::vec3 evaluate(const ProgramView &program, const glm::dvec3 &wi, std::span<glm::vec4> values, const Camera *camera,
                      const glm::dvec3 *eye, const LightPath<float> &path = {}) const;
+  void run_nodes(const ProgramView &program, ScheduleView schedule, const glm::dvec3 &wi, std::span<glm::vec4> values,
+                 const Camera *camera, const glm::dvec3 *eye, const LightPath<float> &path) const;
   void make_maps(const BuildContext &context, bool glass);
   // Returns the integral of a sun's weight over its disc. plain: the nodes without the suns.
   double flux_of(const Sun &sun, const ProgramView &plain) const;

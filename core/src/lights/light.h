@@ -44,8 +44,9 @@ struct Light {
   double plane_tolerance = 0.0; // AREA: a face at most this far before the lamp's plane is meant to lie in the plane
   uint32_t hidden_from = 0;     // RayKind bits
   bool no_shadow = false;
-  uint32_t shader = kNone; // index of LampShaders: its strength multiplies the light; kNone: 1
-  double level = 1.0;      // mean strength, for the choice of a light
+  uint32_t light_group = 0; // 0 = none
+  uint32_t shader = kNone;  // index of LampShaders: its strength multiplies the light; kNone: 1
+  double level = 1.0;       // mean strength, for the choice of a light
   ClassicLight classic;
 };
 

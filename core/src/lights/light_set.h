@@ -34,6 +34,14 @@ public:
   // Return the RayKind bits of the rays that do not see a light, and whether nothing occludes it.
   uint32_t hidden_from(uint32_t light) const { return switches_[light] & ~kNoShadow; }
   bool no_shadow(uint32_t light) const { return switches_[light] & kNoShadow; }
+  // Returns the group of a light, 1 being the first; 0 = none.
+  uint32_t group_of(const GeometryView &geometry, uint32_t light) const {
+    if (light < lamps_.size())
+      return lamps_[light].light_group;
+    const size_t emitter = light - lamps_.size();
+    return emitter < emitters_.size() ? geometry.instances[emitters_[emitter].instance()].light_group
+                                      : environment_.light_group();
+  }
 
   // The choice of a light is one in the binary tree, then one within the light that this step returns.
   const BinaryLightTree &binary_tree() const { return binary_tree_; }

@@ -218,9 +218,11 @@ Background find_background(const Scene &scene, const Camera &camera, const Integ
     return Background();
   const glm::uvec2 pixel = background.coverage.empty_pixel();
   const SampleAddress address{pixel.x, pixel.y, 0};
-  make_integrator(scene, camera, settings)->run(std::span(&address, 1), std::span(&background.sample, 1), nullptr);
+  const auto integrator = make_integrator(scene, camera, settings);
+  integrator->run(std::span(&address, 1), std::span(&background.sample, 1), nullptr);
+  background.extras = integrator->extras();
   // The film drops and counts each sample that is not finite, so a background that is not finite is traced.
-  return film.finite(background.sample) ? background : Background();
+  return film.finite(background.sample, background.extras.channels.data()) ? background : Background();
 }
 
 bool has_even_background(const Scene &scene, const Camera &camera) {

@@ -127,6 +127,7 @@ private:
 struct Background {
   Coverage coverage;
   SampleResult sample = SampleResult(); // of every pixel that is not covered
+  Extras extras{};                      // of the sample
 };
 
 // camera: normalised. Returns a coverage of all pixels if the background varies, if few samples are planned, or if all features

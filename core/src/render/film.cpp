@@ -13,12 +13,12 @@ namespace lancer {
 
 namespace {
 
-const float *numbers_of(const SampleResult &result) { return &result.radiance.x; }
-
-void join(const std::vector<double> &earlier, std::vector<double> &later) {
-  for (size_t i = 0; i < later.size(); ++i)
-    later[i] = earlier[i] + later[i];
+void join_channels(const Film::Sums &earlier, Film::Sums &later) {
+  for (size_t i = 0; i < later.channels.size(); ++i)
+    later.channels[i] = earlier.channels[i] + later.channels[i];
 }
+
+const float *numbers_of(const SampleResult &result) { return &result.radiance.x; }
 
 // Whether two nodes are the halves of one subtree.
 bool are_halves(const Film::Node &earlier, const Film::Node &later) {
@@ -33,7 +33,7 @@ void take_half(Film::Node &later) {
 
 } // namespace
 
-Film::Layout::Layout(uint32_t passes) {
+Film::Layout::Layout(uint32_t passes, const ExtraLayout &given) : extras(given) {
   const uint32_t kept = kept_passes(passes);
   for (uint32_t i = 0; i < kPassCount; ++i) {
     const Pass pass = static_cast<Pass>(i);
@@ -44,6 +44,8 @@ Film::Layout::Layout(uint32_t passes) {
     at[i] = next;
     next += channels(pass);
   }
+  first_extra = summed_channels;
+  summed_channels += extras.channels();
   for (const Pass pass : {Pass::Halves, Pass::AlbedoHalves, Pass::NormalHalves})
     if (passes & bit(pass)) {
       halves.push_back(pass);
@@ -78,8 +80,8 @@ glm::uvec2 Film::Tile::place(uint32_t pixel) const {
   return {x + (1 - begin) + 2 * (within - upper), y + 2 * pair + 1};
 }
 
-Film::Film(uint32_t width, uint32_t height, uint32_t tile_size, uint32_t passes, bool halves)
-    : width_(width), height_(height), passes_(passes | bit(Pass::Combined)), halves_(halves), layout_(passes) {
+Film::Film(uint32_t width, uint32_t height, uint32_t tile_size, uint32_t passes, bool halves, const ExtraLayout &extras)
+    : width_(width), height_(height), passes_(passes | bit(Pass::Combined)), halves_(halves), layout_(passes, extras) {
   for (uint32_t y = 0; y < height; y += tile_size) {
     for (uint32_t x = 0; x < width; x += tile_size) {
       for (const Cells cells : {halves ? Cells::Even : Cells::All, Cells::Odd}) {
@@ -97,15 +99,21 @@ Film::Film(uint32_t width, uint32_t height, uint32_t tile_size, uint32_t passes,
   }
 }
 
-double Film::bytes_needed(double width, double height, uint32_t passes, uint32_t sums) {
-  const Layout layout(passes);
+double Film::bytes_needed(double width, double height, uint32_t passes, uint32_t sums, const ExtraLayout &extras) {
+  // Most pixels show few surfaces.
+  constexpr double kUsualMattes = 4.0;
+  constexpr double kOfMattes = sizeof(uint32_t) + kUsualMattes * (sizeof(uint32_t) + sizeof(double));
+  const Layout layout(passes, extras);
   return width * height *
-         ((double(layout.summed_channels) * sizeof(double) + double(1 + layout.difference_channels) * sizeof(float)) * sums +
+         ((double(layout.summed_channels) * sizeof(double) + double(1 + layout.difference_channels) * sizeof(float) +
+           std::popcount(extras.mattes) * kOfMattes) *
+              sums +
           double(layout.first_channels + 1) * sizeof(float));
 }
 
-void Film::add(Tile &tile, uint32_t samples, std::span<const SampleResult> results) {
+void Film::add(Tile &tile, uint32_t samples, std::span<const SampleResult> results, const Extras &extras) {
   const uint32_t pixels = tile.pixels();
+  const MattesBySample mattes(extras.mattes, layout_.extras.mattes ? results.size() : 0);
   const std::lock_guard lock(tile.mutex);
   if (tile.count == 0) {
     if (tile.first_sample == 0)
@@ -132,13 +140,18 @@ void Film::add(Tile &tile, uint32_t samples, std::span<const SampleResult> resul
     leaf.sums.channels.resize(size_t(pixels) * layout_.summed_channels);
     leaf.sums.differences.assign(pixels, 0.0f);
     leaf.sums.color_differences.assign(size_t(pixels) * layout_.difference_channels, 0.0f);
-    gather(results.subspan(size_t(s) * pixels, pixels), leaf.sums, tile.brightest.data());
+    const size_t first = size_t(s) * pixels;
+    gather(results.subspan(first, pixels), extras.channels.data() + first * layout_.extras.channels(), leaf.sums,
+           tile.brightest.data());
+    gather_mattes(mattes, first, pixels, leaf.sums);
+    for (size_t i = 0; i < joined; ++i)
+      join_mattes(tile.nodes[tile.nodes.size() - 1 - i], leaf.sums);
     // Join smaller sample numbers first.
     for (size_t i = 0; i < joined; ++i) {
       Node &earlier = tile.nodes.back();
       if (i + 1 == joined)
         keep_differences(earlier.sums, earlier.level, leaf.sums);
-      join(earlier.sums.channels, leaf.sums.channels);
+      join_channels(earlier.sums, leaf.sums);
       spare.push_back(std::move(earlier.sums));
       tile.nodes.pop_back();
     }
@@ -148,7 +161,7 @@ void Film::add(Tile &tile, uint32_t samples, std::span<const SampleResult> resul
 }
 
 // The sum of 2^k equal numbers is exactly 2^k times the number.
-void Film::add_even(Tile &tile, uint32_t samples, const SampleResult &result) {
+void Film::add_even(Tile &tile, uint32_t samples, const SampleResult &result, const Extras &extras) {
   const uint32_t pixels = tile.pixels();
   const std::lock_guard lock(tile.mutex);
   const std::vector<SampleResult> results(pixels, result);
@@ -161,7 +174,11 @@ void Film::add_even(Tile &tile, uint32_t samples, const SampleResult &result) {
       keep_first(tile, results);
     tile.brightest.resize(pixels);
   }
-  gather(results, leaf, tile.brightest.data());
+  std::vector<float> even;
+  for (uint32_t pixel = 0; pixel < pixels; ++pixel)
+    even.insert(even.end(), extras.channels.begin(), extras.channels.end());
+  gather(results, even.data(), leaf, tile.brightest.data());
+  gather_mattes(MattesBySample({}, layout_.extras.mattes ? pixels : 0), 0, pixels, leaf);
   // Divide the samples into the largest subtrees.
   std::vector<Node> nodes;
   uint32_t start = tile.next();
@@ -192,7 +209,8 @@ void Film::insert_locked(Tile &tile, Node &&node) const {
   const auto join_with_next = [&](std::vector<Node>::iterator earlier) {
     const auto later = earlier + 1;
     keep_differences(earlier->sums, earlier->level, later->sums);
-    join(earlier->sums.channels, later->sums.channels);
+    join_mattes(*earlier, later->sums);
+    join_channels(earlier->sums, later->sums);
     take_half(*later);
     return tile.nodes.erase(earlier);
   };
@@ -214,6 +232,7 @@ void Film::clear(Tile &tile, uint32_t first_sample) {
   tile.first.clear();
   tile.brightest.clear();
   tile.dropped.clear();
+  tile.seconds = 0.0;
 }
 
 void Film::drop(Tile &tile, const SampleAddress &address) {
@@ -298,8 +317,22 @@ void Film::keep_differences(const Sums &earlier, uint32_t level, Sums &later) co
     }
 }
 
+void Film::join_mattes(const Node &earlier, Sums &later) const {
+  const uint32_t key = hash_combine(earlier.start, earlier.level);
+  for (uint32_t kind = 0; kind < kMatteKinds; ++kind)
+    if (layout_.extras.has_mattes(kind))
+      later.mattes[kind].join(earlier.sums.mattes[kind], key);
+}
+
+void Film::gather_mattes(const MattesBySample &mattes, size_t first, uint32_t pixels, Sums &sums) const {
+  for (uint32_t kind = 0; kind < kMatteKinds; ++kind)
+    if (layout_.extras.has_mattes(kind))
+      sums.mattes[kind].gather(mattes, kind, first, pixels);
+}
+
 // Stores one sample of all pixels in the layout of the sums.
-void Film::gather(std::span<const SampleResult> results, Sums &sums, float *brightest) const {
+void Film::gather(std::span<const SampleResult> results, const float *extras, Sums &sums, float *brightest) const {
+  const uint32_t of_extras = layout_.extras.channels();
   double *to = sums.channels.data();
   for (const SampleResult &result : results) {
     *brightest = std::max(*brightest, std::abs(luminance(result.radiance)));
@@ -308,14 +341,16 @@ void Film::gather(std::span<const SampleResult> results, Sums &sums, float *brig
     const float *numbers = numbers_of(result);
     for (uint32_t i = 0; i < 4; ++i)
       to[i] = double(numbers[i]);
-    if (layout_.summed_channels > 4)
+    if (layout_.first_extra > 4)
       for (const Layout::Run &run : layout_.summed)
         std::copy_n(numbers + run.from, run.count, to + run.to);
+    std::copy_n(extras, of_extras, to + layout_.first_extra);
+    extras += of_extras;
     to += layout_.summed_channels;
   }
 }
 
-bool Film::finite(const SampleResult &result) const {
+bool Film::finite(const SampleResult &result, const float *extras) const {
   // x - x is 0 for a finite x and NaN otherwise. Four floats at a time; the last ones of a run may be tested twice.
   const float *numbers = numbers_of(result);
   Float<4> sum(0.0f);
@@ -330,6 +365,8 @@ bool Film::finite(const SampleResult &result) const {
     for (uint32_t i = 0; run.count < 4 && i < run.count; ++i)
       rest += from[i] - from[i];
   }
+  for (uint32_t i = 0; extras && i < layout_.extras.channels(); ++i)
+    rest += extras[i] - extras[i];
   return all(sum == Float<4>(0.0f)) && rest == 0.0f;
 }
 
@@ -339,9 +376,12 @@ size_t Film::bytes() const {
     const std::lock_guard lock(tile->mutex);
     bytes += sizeof(Tile) + (tile->first.capacity() + tile->brightest.capacity()) * sizeof(float);
     bytes += tile->dropped.capacity() * sizeof(uint64_t);
-    for (const Node &node : tile->nodes)
+    for (const Node &node : tile->nodes) {
+      for (const MatteSums &mattes : node.sums.mattes)
+        bytes += mattes.bytes();
       bytes += sizeof(node) + node.sums.channels.capacity() * sizeof(double) +
                (node.sums.differences.capacity() + node.sums.color_differences.capacity()) * sizeof(float);
+    }
   }
   return bytes;
 }

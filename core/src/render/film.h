@@ -3,6 +3,7 @@
 
 #include "integrator/sample.h"
 #include "lancer.h"
+#include "render/matte_sums.h"
 #include "sampling/sobol.h"
 
 #include <array>
@@ -47,16 +48,19 @@ public:
 
   // passes: bits 1u << Pass; Combined is always stored, and each light pass is stored together with the colour by which it is
   // divided. halves: every square becomes two tiles of a chessboard; tile 2 i + 1 is the other half of tile 2 i.
-  Film(uint32_t width, uint32_t height, uint32_t tile_size, uint32_t passes, bool halves = false);
+  // extras: the channels and the mattes that it sums beside the passes.
+  Film(uint32_t width, uint32_t height, uint32_t tile_size, uint32_t passes, bool halves = false,
+       const ExtraLayout &extras = {});
 
   // Returns the memory, in bytes, of a film of this size where that number of sums waits in each pixel.
-  static double bytes_needed(double width, double height, uint32_t passes, uint32_t sums);
+  static double bytes_needed(double width, double height, uint32_t passes, uint32_t sums, const ExtraLayout &extras = {});
 
   // A complete subtree: [pixel][summed channel]; [pixel] the difference of its halves' mean luminances, 0 for a leaf; for
-  // passes of halves the same of their mean colours, [pixel][channel].
+  // passes of halves the same of their mean colours, [pixel][channel]; the mattes of each kind.
   struct Sums {
     std::vector<double> channels;
     std::vector<float> differences, color_differences;
+    std::array<MatteSums, kMatteKinds> mattes;
   };
 
   // The subtree of the samples start ... start + 2^level - 1.
@@ -77,6 +81,7 @@ public:
     std::vector<float> brightest;  // [pixel] largest luminance of a sample, by its absolute value
     std::vector<uint64_t> dropped; // by the bit width of the sample's number; empty where none was dropped
     SampleAddress first_dropped{0, 0, 0};
+    double seconds = 0.0; // of the threads that rendered its samples here
     mutable std::mutex mutex;
 
     uint32_t pixels() const;
@@ -93,11 +98,12 @@ public:
   bool halves() const { return halves_; }
 
   // Adds the next samples of all pixels of a tile: results[s][pixel] in order of sample. If memory runs out, the tile keeps the
-  // samples counted so far.
-  void add(Tile &tile, uint32_t samples, std::span<const SampleResult> results);
-  // Adds the next samples where they are equal in all pixels.
-  void add_even(Tile &tile, uint32_t samples, const SampleResult &result);
-  // Adds a subtree of samples that the tile does not have, and joins all neighbours. Throws nothing if tile.nodes has room.
+  // samples counted so far. extras: of the results, where the film keeps any.
+  void add(Tile &tile, uint32_t samples, std::span<const SampleResult> results, const Extras &extras = {});
+  // Adds the next samples where they are equal in all pixels and have no mattes.
+  void add_even(Tile &tile, uint32_t samples, const SampleResult &result, const Extras &extras = {});
+  // Adds a subtree of samples that the tile does not have, and joins all neighbours. Throws nothing if tile.nodes has room
+  // and the film keeps no mattes.
   void insert(Tile &tile, Node &&node) const;
   // Empties a tile, whose next sample is then first_sample.
   static void clear(Tile &tile, uint32_t first_sample);
@@ -123,15 +129,21 @@ public:
   // out: one record for each pixel of the tile. Returns the tile's number of samples per pixel; 0, and leaves out unset, if the
   // tile is not whole or has less than kLeastSamples.
   uint32_t luminances(const Tile &tile, std::span<Luminance> out) const;
-  // Whether all summed channels are finite.
-  bool finite(const SampleResult &result) const;
-  // Writes [height][width][channels], row 0 at the bottom; a pixel without samples is 0, and its depth 1e10.
+  // Whether all summed channels are finite; extras: those of the sample, or null where the film keeps none.
+  bool finite(const SampleResult &result, const float *extras = nullptr) const;
+  // Write [height][width][channels], row 0 at the bottom; a pixel without samples is 0, and its depth 1e10.
   void read(Pass pass, std::span<float> out) const;
+  // Passes without a bit, see lancer_pass_kind. extra: the first of count channels of ExtraLayout.
+  void read_extra(uint32_t extra, uint32_t count, std::span<float> out) const;
+  void read_mattes(uint32_t kind, uint32_t number, std::span<float> out) const;
+  void read_sample_count(std::span<float> out) const;
+  void read_render_time(std::span<float> out) const;
   bool has(Pass pass) const { return (passes_ & bit(pass)) != 0; }
   size_t bytes() const;
   uint32_t width() const { return width_; }
   uint32_t height() const { return height_; }
   uint32_t passes() const { return passes_; }
+  const ExtraLayout &extras() const { return layout_.extras; }
   // Numbers of a pixel: in the sums of a node, in its differences of colours, and of sample 0.
   struct Channels {
     uint32_t summed, differences, first;
@@ -141,7 +153,7 @@ public:
 private:
   // The channels that are stored, in order of pass.
   struct Layout {
-    explicit Layout(uint32_t passes);
+    Layout(uint32_t passes, const ExtraLayout &extras);
 
     // Consecutive channels, both in a sample and in the film.
     struct Run {
@@ -153,12 +165,19 @@ private:
     std::vector<Pass> halves;
     std::array<uint32_t, kPassCount> at{}; // first channel of a pass in its list
     uint32_t summed_channels = 0, first_channels = 0, difference_channels = 0;
+    ExtraLayout extras;       // its channels are the last of the summed ones
+    uint32_t first_extra = 0; // of the summed channels
   };
 
   void keep_first(Tile &tile, std::span<const SampleResult> results) const;
   // Inserts a node into a tile whose mutex is locked.
   void insert_locked(Tile &tile, Node &&node) const;
-  void gather(std::span<const SampleResult> results, Sums &sums, float *brightest) const;
+  void gather(std::span<const SampleResult> results, const float *extras, Sums &sums, float *brightest) const;
+  void gather_mattes(const MattesBySample &mattes, size_t first, uint32_t pixels, Sums &sums) const;
+  // Adds the mattes of the earlier half of a subtree; allocates.
+  void join_mattes(const Node &earlier, Sums &later) const;
+  // Calls write(tile, pixel, target) for each pixel that has samples; others are 0.
+  template <class Write> void read_each(uint32_t width, std::span<float> out, Write &&write) const;
   void keep_differences(const Sums &earlier, uint32_t level, Sums &later) const;
   glm::dvec3 mean_color(Pass pass, const Sums &sums, uint32_t level, uint32_t pixel) const;
   double mean_luminance(const Sums &sums, uint32_t level, uint32_t pixel) const;

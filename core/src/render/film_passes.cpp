@@ -23,6 +23,7 @@ uint32_t channels(Pass pass) {
   case Pass::Mist:
   case Pass::DenoisingDepth:
   case Pass::Error:
+  case Pass::Roughness:
     return 1;
   default:
     return 3;
@@ -92,6 +93,10 @@ uint32_t place_in_sample(Pass pass) {
     return LANCER_PLACE(denoising_normal);
   case Pass::DenoisingDepth:
     return LANCER_PLACE(denoising_depth);
+  case Pass::SpecularAlbedo:
+    return LANCER_PLACE(specular_albedo);
+  case Pass::Roughness:
+    return LANCER_PLACE(roughness);
   default:
     return LANCER_PLACE(light) + 3 * (uint32_t(pass) - uint32_t(Pass::Emission));
   }

@@ -50,7 +50,7 @@ void write_energy(Writer &writer, const Energy &energy) {
 
 uint64_t Identity::hash() const {
   static_assert(sizeof(lancer_part) == 32 + 16 + 16 + sizeof(lancer_camera) + sizeof(lancer_settings) + 20, "no padding");
-  static_assert(sizeof(lancer_settings) == sizeof(uint32_t) * 27, "no padding");
+  static_assert(sizeof(lancer_settings) == sizeof(uint32_t) * 31, "no padding");
   static_assert(sizeof(lancer_camera) == 12 * sizeof(double) + 8 * sizeof(uint32_t) + 18 * sizeof(double), "no padding");
   lancer_settings fixed = settings;
 #define LANCER_FIX(kind, name, given, most)                                                                                    \
@@ -119,6 +119,9 @@ size_t part_size(const Film &film) {
       continue;
     const size_t pixels = tile.pixels();
     const size_t of_node = pixels * (channels.summed * sizeof(double) + (1 + channels.differences) * sizeof(float));
+    for (const Film::Node &node : tile.nodes)
+      for (const MatteSums &mattes : node.sums.mattes)
+        size += (mattes.ends.size() + mattes.ids.size()) * sizeof(uint32_t) + mattes.shares.size() * sizeof(double);
     size += 4 * sizeof(uint32_t) + tile.nodes.size() * (2 * sizeof(uint32_t) + of_node);
     size += pixels * (1 + (is_first(tile) ? channels.first : 0)) * sizeof(float);
     size += tile.dropped.size() * sizeof(uint64_t) + (tile.dropped.empty() ? 0 : 3 * sizeof(uint32_t));
@@ -175,6 +178,11 @@ void write_part(const Film &film, const Identity &identity, const Splits &splits
       writer.numbers(node.sums.channels);
       writer.numbers(node.sums.differences);
       writer.numbers(node.sums.color_differences);
+      for (const MatteSums &mattes : node.sums.mattes) {
+        writer.numbers(mattes.ends);
+        writer.numbers(mattes.ids);
+        writer.numbers(mattes.shares);
+      }
     }
     writer.numbers(tile.brightest);
     if (is_first(tile))

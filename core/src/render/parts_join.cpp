@@ -77,6 +77,26 @@ bool are_sums_of_floats(const Film::Node &node) {
                              [&](double sum) { return sum == 0.0 || (std::abs(sum) >= kLeast && std::abs(sum) <= most); });
 }
 
+// Reads the mattes of a kind of a node.
+void read_mattes(Reader &reader, size_t pixels, const Film::Node &node, MatteSums &mattes) {
+  reader.numbers(mattes.ends, pixels);
+  uint32_t begin = 0;
+  for (const uint32_t end : mattes.ends) {
+    if (end < begin || end - begin > LANCER_MOST_MATTES)
+      refuse_damaged("its mattes are out of order");
+    begin = end;
+  }
+  reader.numbers(mattes.ids, begin);
+  reader.numbers(mattes.shares, begin);
+  const double most = std::ldexp(double(std::numeric_limits<float>::max()), int(node.level));
+  begin = 0;
+  for (const uint32_t end : mattes.ends)
+    for (const uint32_t first = begin; begin < end; ++begin)
+      if (mattes.ids[begin] == 0 || (begin > first && mattes.ids[begin] <= mattes.ids[begin - 1]) ||
+          !(mattes.shares[begin] > 0.0 && mattes.shares[begin] <= most))
+        refuse_damaged("its mattes are out of order");
+}
+
 // Whether a tile can have dropped such samples: no more of any bit width than it has, and the first one of the lowest.
 bool are_dropped(const Incoming &incoming, const Film::Tile &tile) {
   const SampleAddress &first = incoming.first_dropped;
@@ -137,6 +157,9 @@ Incoming read_tile(Reader &reader, const Film &film, int64_t last) {
     reader.numbers(node.sums.channels, pixels * channels.summed);
     reader.numbers(node.sums.differences, pixels);
     reader.numbers(node.sums.color_differences, pixels * channels.differences);
+    for (uint32_t kind = 0; kind < kMatteKinds; ++kind)
+      if (film.extras().has_mattes(kind))
+        read_mattes(reader, pixels, node, node.sums.mattes[kind]);
     if (!are_sums_of_floats(node))
       refuse_damaged("a sum of tile " + std::to_string(incoming.tile) + " is no sum of its samples");
   }

@@ -36,6 +36,7 @@ Pilot::Pilot(const Scene &scene, const Camera &camera, const Background &backgro
     : scene_(scene), camera_(camera), background_(background), settings_(settings), costs_(threads), barrier_(threads) {
   // Other passes cost time and do not change the noise of the picture.
   settings_.passes = 1u << LANCER_PASS_COMBINED;
+  settings_.mattes = settings_.light_groups = settings_.aov_colors = settings_.aov_values = 0;
   settings_.splits = {};
   // Fix the seed: every seed, and every frame of an animation that changes nothing else, gets the same splits.
   settings_.seed = 0;

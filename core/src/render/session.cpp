@@ -41,13 +41,16 @@ const Camera &checked_memory(const Camera &camera, const IntegratorSettings &set
   constexpr uint32_t kForDenoising = bit(Pass::Halves) | bit(Pass::AlbedoHalves) | bit(Pass::NormalHalves);
   const uint32_t samples = std::max(settings.samples, 1u);
   const auto bytes = [&](uint32_t passes) {
-    return Film::bytes_needed(camera.region_width, camera.region_height, passes, uint32_t(waiting_sums(settings, samples)));
+    return Film::bytes_needed(camera.region_width, camera.region_height, passes, uint32_t(waiting_sums(settings, samples)),
+                              settings.extras());
   };
   std::string what = "film: " + std::to_string(camera.region_width) + " x " + std::to_string(camera.region_height) +
                      " pixels, " + std::to_string(samples) + " samples";
   if (settings.passes & kForDenoising)
     what += " and passes for denoising (without these " +
             std::to_string(uint64_t(bytes(settings.passes & ~kForDenoising) / 1e6)) + " MB)";
+  if (settings.light_groups > 0)
+    what += ", " + std::to_string(settings.light_groups) + " light groups";
   check_memory(what, bytes(settings.passes));
   return camera;
 }
@@ -71,7 +74,7 @@ Session::Session(std::shared_ptr<const Scene> scene, const Camera &camera, const
     : scene_(std::move(scene)), camera_(normalised(checked_memory(camera, settings), scene_.get())), identity_(identity),
       settings_(settings),
       film_(camera.region_width, camera.region_height, tile_size(camera, settings, ThreadPool::resolved(settings.threads)),
-            settings.passes, settings.refines),
+            settings.passes, settings.refines, settings.extras()),
       pool_(scene_ ? settings.threads : 1) {
   settings_.cancel = &cancel_;
   splits_ = settings_.splits;
@@ -307,17 +310,6 @@ Session::State Session::wait(uint32_t milliseconds, Progress &progress) {
   // A search for the splits that is cancelled leaves nothing to continue.
   cancelled_ = cancelled_ || (cancel_ && (progress.samples - samples_before_ < range_samples_ || (deciding_ && !prepared_)));
   return cancelled_ ? State::Cancelled : State::Done;
-}
-
-void Session::read(Pass pass, std::span<float> out) const {
-  if (pass == Pass::Error) {
-    const std::vector<float> bars = error_bars(LuminanceMap(film_, pool_.size()));
-    std::copy(bars.begin(), bars.end(), out.begin());
-    return;
-  }
-  if (!film_.has(pass))
-    bad_argument("session: pass " + std::to_string(uint32_t(pass)) + " is not stored; request it in the settings");
-  film_.read(pass, out);
 }
 
 SampleResult Session::replay(const SampleAddress &address, std::vector<PathVertex> &vertices) {

@@ -85,7 +85,9 @@ public:
     cancel_ = true;
   }
 
-  void read(Pass pass, std::span<float> out) const;
+  // Returns the channels of a pass of the interface, whose number lancer_pass_kind explains; throws Error if there is none.
+  static uint32_t channels_of(uint32_t pass);
+  void read(uint32_t pass, std::span<float> out) const;
   const Film &film() const { return film_; }
   SessionStatistics statistics() const;
   SessionError error(double confidence) const;

@@ -30,6 +30,7 @@ private:
   void render_batch(const Film::Tile &tile, uint32_t samples);
   void drop_invalid(Film &film, Film::Tile &tile);
   std::span<const SampleResult> all_pixels(const Film::Tile &tile, uint32_t samples, const SampleResult &background);
+  const Extras &extras_of_pixels(const Film::Tile &tile, uint32_t samples, const Extras &background);
   void publish();
 
   const IntegratorSettings &settings_;
@@ -37,7 +38,9 @@ private:
   std::vector<uint32_t> covered_; // pixels of the tile
   std::vector<SampleAddress> addresses_;
   std::vector<SampleResult> results_, spread_; // of addresses_; of all pixels
-  RayCounts rays_before_;                      // of the integrator, before the batch
+  ExtraLayout layout_;
+  Extras extras_, spread_extras_; // of addresses_; of all pixels
+  RayCounts rays_before_;         // of the integrator, before the batch
   uint64_t vertices_before_ = 0;
   Energy batch_energy_;
   // Members that other threads read.

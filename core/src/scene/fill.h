@@ -63,6 +63,11 @@ void check_references(const Description &description);
 // them.
 Program read_program(Images images, const std::string &owner, const lancer_node *nodes, uint32_t count);
 void check_reference(const std::string &owner, const char *what, const lancer_parameter &parameter, const Program &program);
+// Checks and copies the outputs of an owner, whose nodes are those of the program.
+std::vector<Output> read_outputs(const std::string &owner, const lancer_output *outputs, uint32_t count,
+                                 const Program &program);
+// Returns the nodes that outputs depend on, in order of evaluation.
+Schedule schedule_of(std::span<const Output> outputs, const Program &program);
 
 // Checks and copies a camera; throws an Error for invalid values.
 Camera read_camera(const lancer_camera &source);

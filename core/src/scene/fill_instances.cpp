@@ -135,6 +135,9 @@ void add_instances(Description &description, uint32_t count, const lancer_instan
     instance.first_slot = slot_base + given.first_slot;
     instance.slot_count = given.slot_count;
     instance.object_index = given.object_index;
+    instance.object_matte = given.object_matte;
+    instance.asset_matte = given.asset_matte;
+    instance.light_group = given.light_group;
     instance.hidden_from = given.hidden_from;
     instance.terminator = std::isfinite(given.terminator) ? std::clamp(given.terminator, 0.0f, 1.0f) : 0.0f;
     instance.holdout = (given.flags & LANCER_INSTANCE_HOLDOUT) != 0;

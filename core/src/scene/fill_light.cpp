@@ -83,6 +83,7 @@ LightDescription read_light(const lancer_light &source, size_t number, Images im
 
   LightDescription light;
   light.name = source.name ? source.name : "";
+  light.light_group = source.light_group;
   light.kind = static_cast<LightKind>(source.kind);
   light.program = read_program(images, object, source.nodes, source.node_count);
   if (source.node_count)
@@ -157,6 +158,9 @@ World read_world(const lancer_world &source, Images images) {
   world.schedule = world.program.schedule(std::span(&world.radiance, 1));
   world.hidden_from = source.hidden_from;
   world.map_resolution = source.map_resolution;
+  world.light_group = source.light_group;
+  world.outputs = read_outputs("world", source.outputs, source.output_count, world.program);
+  world.output_nodes = schedule_of(world.outputs, world.program);
   return world;
 }
 

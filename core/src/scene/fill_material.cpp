@@ -228,6 +228,7 @@ void make_schedules(Material &material) {
   material.transmittance_nodes = schedule(std::move(transmittance));
   material.emission_nodes = schedule(std::move(emission));
   material.displacement_nodes = schedule({material.displacement});
+  material.output_nodes = schedule_of(material.outputs, material.program);
 }
 
 } // namespace
@@ -252,6 +253,7 @@ Material read_material(const lancer_material &source, size_t number, Images imag
   Material material;
   material.name = source.name ? source.name : "";
   material.index = source.material_index;
+  material.matte = source.matte;
   material.flags = source.flags;
   material.program = read_program(images, object, source.nodes, source.node_count);
   const MaterialReader reader(object, material.program, messages);
@@ -269,6 +271,7 @@ Material read_material(const lancer_material &source, size_t number, Images imag
                                 reader.read_vector("portal position", given.position),
                                 reader.read_vector("portal direction", given.direction)});
   }
+  material.outputs = read_outputs(object, source.outputs, source.output_count, material.program);
   make_schedules(material);
   return material;
 }

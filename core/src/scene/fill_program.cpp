@@ -366,4 +366,31 @@ void check_reference(const std::string &owner, const char *what, const lancer_pa
                  std::to_string(program.nodes.size()) + " nodes");
 }
 
+std::vector<Output> read_outputs(const std::string &owner, const lancer_output *outputs, uint32_t count,
+                                 const Program &program) {
+  if (count > LANCER_MOST_NODES)
+    bad_argument(owner + ": " + std::to_string(count) + " outputs > " + std::to_string(LANCER_MOST_NODES));
+  if (count && !outputs)
+    bad_argument(owner + ": outputs is NULL for " + std::to_string(count) + " outputs");
+  std::vector<Output> all(count);
+  for (uint32_t i = 0; i < count; ++i) {
+    const lancer_output &given = outputs[i];
+    check_reference(owner, "an output", given.value, program);
+    if (given.is_color > 1)
+      bad_argument(owner + ": output " + std::to_string(i) + " has is_color " + std::to_string(given.is_color) +
+                   ", which is not 0 or 1");
+    all[i] = {given.number,
+              given.is_color != 0,
+              {{given.value.value[0], given.value.value[1], given.value.value[2]}, given.value.node}};
+  }
+  return all;
+}
+
+Schedule schedule_of(std::span<const Output> outputs, const Program &program) {
+  std::vector<Parameter> values;
+  for (const Output &output : outputs)
+    values.push_back(output.value);
+  return program.schedule(values);
+}
+
 } // namespace lancer

@@ -67,7 +67,8 @@ bool Instance::same(const Instance &other) const {
   const auto bits = [](const auto &a, const auto &b) { return std::memcmp(&a, &b, sizeof a) == 0; };
   return bits(to_world, other.to_world) && bits(to_object, other.to_object) && bits(reach, other.reach) && kind == other.kind &&
          shading == other.shading && mesh == other.mesh && first_slot == other.first_slot && slot_count == other.slot_count &&
-         object_index == other.object_index && hidden_from == other.hidden_from && holdout == other.holdout &&
+         object_index == other.object_index && object_matte == other.object_matte && asset_matte == other.asset_matte &&
+         light_group == other.light_group && hidden_from == other.hidden_from && holdout == other.holdout &&
          bits(terminator, other.terminator) && number == other.number && bits(flat_axis, other.flat_axis) &&
          first_key == other.first_key && key_count == other.key_count;
 }

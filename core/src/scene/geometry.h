@@ -136,7 +136,9 @@ struct Instance {
   uint32_t mesh = 0;
   uint32_t first_slot = 0, slot_count = 0;
   uint32_t object_index = 0;
-  uint32_t hidden_from = 0; // RayKind bits
+  uint32_t object_matte = 0, asset_matte = 0; // ids; 0 = none
+  uint32_t light_group = 0;                   // of its own light; 0 = none
+  uint32_t hidden_from = 0;                   // RayKind bits
   bool holdout = false;
   float terminator = 0.0f;               // of smooth meshes: cosine below which shadow rays start on the curved surface
   uint32_t number = 0;                   // in the user's order of adding

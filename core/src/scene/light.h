@@ -33,6 +33,7 @@ struct LightDescription {
   float spread = 3.14159265f;
   uint32_t hidden_from = 0; // RayKind bits
   bool no_shadow = false;
+  uint32_t light_group = 0; // 0 = none
   // CLASSIC only.
   Falloff falloff = Falloff::Physical;
   float falloff_radius = 0.0f;
@@ -47,6 +48,9 @@ struct WorldView {
   uint32_t hidden_from = 0;         // RayKind bits
   uint32_t map_resolution = 0;      // 0 = by its images
   std::optional<glm::vec3> ambient; // replaces the mean radiance for Ka
+  uint32_t light_group = 0;         // 0 = none
+  std::span<const Output> outputs;
+  ScheduleView output_nodes;
 
   bool varies() const { return radiance.varies(); }
 };
@@ -59,10 +63,15 @@ struct World {
   uint32_t hidden_from = 0;
   uint32_t map_resolution = 0;
   std::optional<glm::vec3> ambient;
+  uint32_t light_group = 0;
+  std::vector<Output> outputs;
+  Schedule output_nodes;
 
   bool varies() const { return radiance.varies(); }
   // Valid until the world changes.
-  operator WorldView() const { return {program, radiance, schedule, hidden_from, map_resolution, ambient}; }
+  operator WorldView() const {
+    return {program, radiance, schedule, hidden_from, map_resolution, ambient, light_group, outputs, output_nodes};
+  }
 };
 
 } // namespace lancer

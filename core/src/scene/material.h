@@ -56,6 +56,7 @@ struct ReadyMaterial; // compile/scene.h
 struct MaterialParameters {
   Parameter emission, transmittance, holdout, ambient, displacement, normal;
   uint32_t index = 0;
+  uint32_t matte = 0; // id; 0 = none
   uint32_t flags = 0; // MaterialFlag
 
   bool layered_emission = false; // a Principled lobe emits
@@ -71,6 +72,7 @@ struct MaterialParameters {
 struct MaterialView : MaterialParameters {
   std::span<const LobeDescription> lobes;
   std::span<const Portal> portals;
+  std::span<const Output> outputs;
   ProgramView program;
   const ReadyLobe *ready = nullptr; // by number of lobe
 
@@ -79,6 +81,7 @@ struct MaterialView : MaterialParameters {
   ScheduleView transmittance_nodes; // for shadow rays
   ScheduleView emission_nodes;      // for light samples, including layered emission
   ScheduleView displacement_nodes;
+  ScheduleView output_nodes;
 
   bool fixed() const { return program.nodes.empty(); } // no node decides anything
 };
@@ -88,15 +91,21 @@ struct Material : MaterialParameters {
   std::string name;
   std::vector<LobeDescription> lobes;
   std::vector<Portal> portals;
+  std::vector<Output> outputs;
   Program program;
-  Schedule surface_nodes, transmittance_nodes, emission_nodes, displacement_nodes;
+  Schedule surface_nodes, transmittance_nodes, emission_nodes, displacement_nodes, output_nodes;
 
   Once<ReadyMaterial> ready; // made when a scene first needs it
 
   bool fixed() const { return program.nodes.empty(); }
   // Valid until the material changes.
   operator MaterialView() const {
-    return {*this, lobes, portals, program, nullptr, surface_nodes, transmittance_nodes, emission_nodes, displacement_nodes};
+    return {*this,          lobes,
+            portals,        outputs,
+            program,        nullptr,
+            surface_nodes,  transmittance_nodes,
+            emission_nodes, displacement_nodes,
+            output_nodes};
   }
 };
 

@@ -19,6 +19,13 @@ struct Parameter {
   bool varies() const { return node >= 0; }
 };
 
+// A value that goes into a pass, see lancer_output.
+struct Output {
+  uint32_t number = 0;
+  bool is_color = false;
+  Parameter value;
+};
+
 // SKY: texels of the table of PREETHAM and HOSEK_WILKIE: the sun, the radiance and nine coefficients.
 inline constexpr uint32_t kSkyTexels = 11;
 

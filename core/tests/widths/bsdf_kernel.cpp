@@ -129,6 +129,7 @@ void report_all(Bsdf<F> &bsdf, const Place *of, Report &add) {
   add("mix: diffuse", mixture.diffuse);
   add("mix: specular", mixture.specular);
   add("mix: matt", mixture.matt);
+  add("mix: roughness", mixture.roughness);
   for (int k = 0; k < Place::kDirections; ++k) {
     Vec3<F> wi;
     put_lanes(wi, [&](int i) { return of[i].wi[k]; });

@@ -93,6 +93,10 @@ void add_denoising_guides(const Scene &scene, const Camera &camera, const Mixtur
     // surface.
     const float here = mixture.all > 0.0f ? smooth_step(mixture.matt / (0.5f * mixture.all)) : 0.0f;
     const float passing = mean(transmittance);
+    if (!guides.scattered) {
+      result.specular_albedo += guides.share * guides.beta * mixture.specular;
+      result.roughness += guides.share * mean(guides.beta) * mixture.roughness;
+    }
     const float solid = mixture.all > 0.0f ? mixture.all / (mixture.all + passing) : 0.0f;
     result.albedo += guides.share * here * guides.beta * mixture.diffuse;
     result.denoising_normal += guides.share * here * solid * mean(guides.beta) * normal;

@@ -34,8 +34,9 @@ struct DenoisingGuides {
   bool open = false; // the surface that ends the search is still to come
   bool first = true; // no surface has been hit yet
   bool blended = false;
-  float share = 1.0f;   // of the pixel's sample, where a path has split
-  double counted = 0.0; // distance along the current ray that is already counted, normalised units
+  bool scattered = false; // the path has been scattered before
+  float share = 1.0f;     // of the pixel's sample, where a path has split
+  double counted = 0.0;   // distance along the current ray that is already counted, normalised units
   glm::vec3 beta{1.0f};
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "integrator/aov/first_surface.h"
+#include "integrator/aov/surface_extras.h"
 #include "integrator/sample.h"
 #include "integrator/stages/camera.h"
 #include "integrator/stages/light_passes.h"
@@ -19,6 +20,7 @@ public:
         surfaces_(scene, camera, settings), queues_(scene), passes_(settings), sky_values_(scene.world.program.value_count()) {}
 
   void run(std::span<const SampleAddress> addresses, std::span<SampleResult> results, std::vector<PathVertex> *trace) override {
+    extras_.begin(addresses.size(), settings_.extras());
     rays_.clear();
     samples_.clear();
     generator_.start(addresses, passes_.wanted(), results, [&](uint32_t sample, const Sampler &) -> Ray & {
@@ -61,22 +63,26 @@ private:
       return;
     surfaces_.find();
     surfaces_.ask_nodes(
-        [&](uint32_t lane) { return View{.wo = get(surfaces_.surfaces().wo, lane), .path = {.kinds = RayKind::Camera}}; });
+        [&](uint32_t lane) { return View{.wo = get(surfaces_.surfaces().wo, lane), .path = {.kinds = RayKind::Camera}}; },
+        settings_.extras().has_outputs());
     surfaces_.build_lobes();
     // This picture shows every surface as opaque.
     surfaces_.make_opaque();
     surfaces_.describe();
     for (uint32_t lane = 0; lane < surfaces_.count(); ++lane)
-      show(lane, results[samples_[number_[lane]]], trace);
+      show(lane, samples_[number_[lane]], results, trace);
     surfaces_.clear();
   }
 
-  void show(uint32_t lane, SampleResult &result, std::vector<PathVertex> *trace) {
+  void show(uint32_t lane, uint32_t sample, std::span<SampleResult> results, std::vector<PathVertex> *trace) {
+    SampleResult &result = results[sample];
     const Surface surface = surfaces_.surface(lane);
     const double t = surfaces_.hit(lane).t;
     record_place(scene_, surface, surfaces_.material(lane), t, result);
     record_first_surface(scene_, settings_, surface, get(surfaces_.means().normal, lane), result);
     record_seen(scene_, camera_, settings_, passes_, surface, surfaces_, lane, glm::vec3(1.0f), result);
+    add_mattes(scene_, settings_.extras(), sample, surface.instance, surfaces_.material(lane), 1.0f, extras_);
+    add_outputs(settings_.extras(), sample, surfaces_, lane, extras_);
     DenoisingGuides guides = begin_guides(settings_, passes_.guides());
     if (guides.open)
       add_denoising_guides(scene_, camera_, surfaces_.mixture(lane), get(surfaces_.surfaces().wo, lane), glm::vec3(0.0f),

@@ -1,6 +1,7 @@
 #include "integrator/classic/classic.h"
 
 #include "compile/steps.h"
+#include "integrator/aov/surface_extras.h"
 #include "scene/hit_surface.h"
 #include "simd/vectors.h"
 
@@ -39,12 +40,15 @@ glm::vec3 ambient_light(const Scene &scene, const Camera &camera) {
 ClassicIntegrator::ClassicIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
     : scene_(scene), camera_(camera), settings_(settings), generator_(camera, scene.motion, settings), light_(scene, &camera),
       shadows_(scene, camera, settings), passes_(settings), queues_(scene), surfaces_(scene, camera, settings),
-      kernel_(classic_kernel()), ambient_(ambient_light(scene, camera)), only_combined_(settings.passes == bit(Pass::Combined)),
+      kernel_(classic_kernel()), ambient_(ambient_light(scene, camera)), layout_(settings.extras()),
+      only_combined_(settings.passes == bit(Pass::Combined) && !layout_.mattes && !layout_.has_outputs()),
       sky_values_(scene.world.program.value_count()) {}
 
 void ClassicIntegrator::run(std::span<const SampleAddress> addresses, std::span<SampleResult> results,
                             std::vector<PathVertex> *trace) {
+  extras_.begin(addresses.size(), layout_);
   for (size_t begin = 0; begin < addresses.size() && !settings_.cancelled();) {
+    first_ = uint32_t(begin);
     const size_t size = std::min(crowded_ ? kSmallPart : addresses.size(), addresses.size() - begin);
     if (run_part(addresses.subspan(begin, size), results.subspan(begin, size), trace))
       begin += size;
@@ -60,6 +64,7 @@ bool ClassicIntegrator::run_part(std::span<const SampleAddress> addresses, std::
                                  std::vector<PathVertex> *trace) {
   const RayCounts before = counts_;
   const uint64_t vertices_before = vertices_;
+  const size_t mattes_before = extras_.mattes.size();
   generate(addresses, results);
   // Trace the recursion depth by depth, so that a pixel's sum has the same order in any batch.
   while (!rays_.empty() && !settings_.cancelled()) {
@@ -82,6 +87,9 @@ bool ClassicIntegrator::run_part(std::span<const SampleAddress> addresses, std::
     if (rays_.size() > kCrowd && addresses.size() > kSmallPart) {
       counts_ = before;
       vertices_ = vertices_before;
+      extras_.mattes.resize(mattes_before);
+      std::fill_n(extras_.channels.begin() + ptrdiff_t(size_t(first_) * layout_.channels()),
+                  addresses.size() * layout_.channels(), 0.0f);
       return false;
     }
   }
@@ -105,6 +113,9 @@ void ClassicIntegrator::generate(std::span<const SampleAddress> addresses, std::
 void ClassicIntegrator::miss(const Branch &branch, const glm::dvec3 &eye, const glm::vec3 &direction, SampleResult &result) {
   if (branch.depth == 0)
     add_sky_guides(branch.guides, result);
+  if (branch.depth == 0 && !branch.seen && layout_.has_outputs())
+    add_sky_outputs(scene_, camera_, settings_, first_ + branch.sample, glm::dvec3(direction), eye, {.kinds = branch.kinds},
+                    sky_values_, extras_);
   // A transparent film does not show the environment itself, but the environment's pass does.
   if (branch.depth == 0 && settings_.film_transparent) {
     result.alpha -= mean(branch.weight);
@@ -130,6 +141,7 @@ void ClassicIntegrator::gather(size_t number, SampleResult &result, std::vector<
   if (vertex.nothing)
     return;
   add(branch, branch.weight * vertex.emission, false, result);
+  branch.guides.scattered = branch.depth > 0;
   if (branch.guides.open)
     add_denoising_guides(scene_, camera_, guides_[number].mixture, guides_[number].wo, vertex.transmittance,
                          hits_[number].t * glm::length(ray.d), branch.guides, result);

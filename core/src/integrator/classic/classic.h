@@ -169,7 +169,9 @@ private:
   BranchBlock branched_{};
   LitBlock lit_block_{};
   IrradianceBlock irradiance_{};
-  glm::vec3 ambient_;    // ambient light for Ka
+  glm::vec3 ambient_; // ambient light for Ka
+  ExtraLayout layout_;
+  uint32_t first_ = 0;   // number of the part's first sample in the batch
   bool only_combined_;   // no other pass is requested
   bool corners_ = false; // the block's vertices are lit at the corners of their triangles
   bool crowded_ = false; // batches are rendered in small parts

@@ -3,6 +3,7 @@
 
 #include "compile/steps.h"
 #include "integrator/aov/first_surface.h"
+#include "integrator/aov/surface_extras.h"
 #include "simd/vectors.h"
 
 namespace lancer {
@@ -69,14 +70,19 @@ void ClassicIntegrator::shade_block(std::span<SampleResult> results) {
   if (surfaces_.count() == 0)
     return;
   surfaces_.find();
-  surfaces_.ask_nodes([&](uint32_t lane) {
-    const Branch &branch = branch_of(lane);
-    const double unit = glm::length(surfaces_.ray(lane).d);
-    double way = (branch.passed + surfaces_.hit(lane).t) * unit;
-    if (is_flat(surfaces_.instance(lane)))
-      way = surfaces_.surfaces().length[lane] + (branch.depth == 0 ? 0.0 : branch.passed * unit);
-    return surfaces_.view(lane, way, {.kinds = branch.kinds, .depth = float(branch.depth)});
-  });
+  surfaces_.ask_nodes(
+      [&](uint32_t lane) {
+        const Branch &branch = branch_of(lane);
+        const double unit = glm::length(surfaces_.ray(lane).d);
+        double way = (branch.passed + surfaces_.hit(lane).t) * unit;
+        if (is_flat(surfaces_.instance(lane)))
+          way = surfaces_.surfaces().length[lane] + (branch.depth == 0 ? 0.0 : branch.passed * unit);
+        return surfaces_.view(lane, way, {.kinds = branch.kinds, .depth = float(branch.depth)});
+      },
+      layout_.has_outputs());
+  for (uint32_t lane = 0; lane < surfaces_.count() && layout_.has_outputs(); ++lane)
+    if (const Branch &branch = branch_of(lane); branch.depth == 0 && !branch.seen)
+      add_outputs(layout_, first_ + branch.sample, surfaces_, lane, extras_);
   cut_holdouts(results);
   surfaces_.build_lobes();
   if (!only_combined_)
@@ -121,6 +127,8 @@ void ClassicIntegrator::record(std::span<SampleResult> results) {
       record_first_surface(scene_, settings_, met, get(surfaces_.means().normal, lane), result);
       branch.seen = true;
     }
+    add_mattes(scene_, layout_, first_ + branch.sample, met.instance, surfaces_.material(lane),
+               mean(branch.weight) * mean(surfaces_.opacity(lane)), extras_);
     if (passes_.mist() || passes_.components())
       record_seen(scene_, camera_, settings_, passes_, met, surfaces_, lane, branch.weight, result);
   }

@@ -11,7 +11,7 @@ namespace lancer {
 void PathIntegrator::run(std::span<const SampleAddress> addresses, std::span<SampleResult> results,
                          std::vector<PathVertex> *trace) {
   // Start one path per sample.
-  film_.begin(addresses, results, trace);
+  film_.begin(addresses, results, extras_, trace);
   start(addresses, results);
   const auto gathered = [&](uint32_t sample) { return film_.gathered(sample); };
   for (uint32_t turn = 0; !(queue_.paths.empty() && below_.empty()) && !settings_.cancelled(); ++turn) {
@@ -74,10 +74,14 @@ void PathIntegrator::shade() {
   missed_.clear();
   queues_.begin();
   for (size_t i = 0; i < queue_.paths.size(); ++i)
-    if (hits_[i].valid())
+    if (hits_[i].valid()) {
       queues_.add(i, hits_[i]);
-    else if (film_.miss(queue_.paths[i]) && queue_.paths[i].shows_light(scene_.world.hidden_from))
-      missed_.push_back(i);
+    } else {
+      if (film_.wants_outputs(queue_.paths[i]))
+        film_.add_sky_outputs(queue_.paths[i], queue_.rays[i], queue_.from[i].p);
+      if (film_.miss(queue_.paths[i]) && queue_.paths[i].shows_light(scene_.world.hidden_from))
+        missed_.push_back(i);
+    }
   add_environment();
   shade_queued();
   leave();
@@ -104,7 +108,7 @@ void PathIntegrator::add_lamps() {
        met_.find(queue_.rays, hits_, queue_.from, [&](size_t ray) { return queue_.paths[ray].asking_path(); })) {
     const Path &path = queue_.paths[met.ray];
     if (path.shows_light(scene_.lights.hidden_from(met.light)))
-      film_.add(path, path.beta * met.radiance * met.weight, false);
+      film_.add(path, path.beta * met.radiance * met.weight, false, scene_.lights.lamps()[met.light].light_group);
   }
 }
 
@@ -112,7 +116,8 @@ void PathIntegrator::add_lamps() {
 void PathIntegrator::add_environment() {
   const Environment &environment = scene_.lights.environment();
   for (size_t i = 0; i < missed_.size() && !environment.varies(); ++i)
-    film_.add(queue_.paths[missed_[i]], queue_.paths[missed_[i]].beta * environment.constant(), true);
+    film_.add(queue_.paths[missed_[i]], queue_.paths[missed_[i]].beta * environment.constant(), true,
+              environment.light_group());
   for (size_t first = 0; first < missed_.size() && environment.varies(); first += kBlockLanes) {
     const auto now = std::span(missed_).subspan(first, std::min<size_t>(kBlockLanes, missed_.size() - first));
     for (uint32_t lane = 0; lane < now.size(); ++lane) {
@@ -123,18 +128,19 @@ void PathIntegrator::add_environment() {
     met_.look_at_sky(uint32_t(now.size()));
     for (uint32_t lane = 0; lane < now.size(); ++lane) {
       const Path &path = queue_.paths[now[lane]];
-      film_.add(path, path.beta * met_.sky_radiance(lane) * met_.sky_weight(lane, queue_.from[now[lane]]), true);
+      film_.add(path, path.beta * met_.sky_radiance(lane) * met_.sky_weight(lane, queue_.from[now[lane]]), true,
+                environment.light_group());
     }
   }
 }
 
-// Adds a hit to the block. Skips a hit that neither scatters, emits, passes light nor cuts a hole, where the batch fills the
-// picture alone. max_bounces counts the scatterings after the first.
+// Adds a hit to the block. Skips a hit that neither scatters, emits, passes light nor cuts a hole, and that no pass reads.
+// max_bounces counts the scatterings after the first.
 void PathIntegrator::put_in_lane(size_t number, const MaterialView &material) {
   const Path &path = queue_.paths[number];
   const Hit &hit = hits_[number];
   const bool ends = path.last || path.scatterings > settings_.max_bounces;
-  if (ends && film_.only_combined() && !material.emits() && !material.is_transparent() &&
+  if (ends && !film_.reads_end(path) && !material.emits() && !material.is_transparent() &&
       !scene_.geometry.instances[hit.instance].holdout)
     return;
   const uint32_t lane = surface_.add(queue_.rays[number], hit, material, ends);
@@ -155,19 +161,25 @@ void PathIntegrator::shade_block() {
   const uint32_t count = surface_.count();
   if (count == 0)
     return;
+  uint32_t outputs_wanted = 0;
+  for (uint32_t lane = 0; lane < count; ++lane)
+    outputs_wanted |= uint32_t{film_.wants_outputs(path_of(lane))} << lane;
   // Find the surfaces and what their nodes say there, cut holes, and build the lobes.
   surface_.find();
-  surface_.ask_nodes([&](uint32_t lane) {
-    const Path &path = path_of(lane);
-    const double unit = surface_.surfaces().length[lane], t = surface_.hit(lane).t;
-    View view = surface_.view(lane, path.length + t * unit,
-                              path.light_path((t - surface_.ray(lane).tmin) * unit / scene_.normalisation.scale, t * unit));
-    view.pixel = path.sampler.pixel();
-    view.sample = path.sampler.sample();
-    view.dimension = path.nodes_dimension();
-    view.sharp = path.sharp;
-    return view;
-  });
+  surface_.ask_nodes(
+      [&](uint32_t lane) {
+        const Path &path = path_of(lane);
+        const double unit = surface_.surfaces().length[lane], t = surface_.hit(lane).t;
+        View view = surface_.view(lane, path.length + t * unit,
+                                  path.light_path((t - surface_.ray(lane).tmin) * unit / scene_.normalisation.scale, t * unit));
+        view.pixel = path.sampler.pixel();
+        view.sample = path.sampler.sample();
+        view.dimension = path.nodes_dimension();
+        view.sharp = path.sharp;
+        return view;
+      },
+      outputs_wanted != 0);
+  each_lane(outputs_wanted, [&](uint32_t lane) { film_.add_outputs(path_of(lane), surface_, lane); });
   cut_holdouts();
   surface_.build_lobes();
   // Fill the passes, and add the light that the surfaces emit.
@@ -202,7 +214,8 @@ void PathIntegrator::add_emission(uint32_t lane) {
     return;
   const glm::vec3 emission = surface_.emission(lane);
   if (emission != glm::vec3(0.0f))
-    film_.add(path, path.beta * emission * met_.emission_weight(queue_.from[path_[lane]], surface_.surface(lane)), false);
+    film_.add(path, path.beta * emission * met_.emission_weight(queue_.from[path_[lane]], surface_.surface(lane)), false,
+              surface_.instance(lane).light_group);
   if (!path.last && film_.wants_guides(path))
     film_.add_guides(path, surface_.mixture(lane), get(surface_.surfaces().wo, lane), surface_.transmittance(lane),
                      surface_.distance(lane));
@@ -253,7 +266,7 @@ LightPath<float> PathIntegrator::asking_path(uint32_t lane) const {
 // Queues a lane's light sample with its shadow ray.
 void PathIntegrator::send_shadow(uint32_t lane) {
   const Path &path = path_of(lane);
-  const WaitingLight waiting = film_.waiting(path, light_.lit().share, lane);
+  const WaitingLight waiting = film_.waiting(path, light_.lit().share, lane, light_.chosen(lane));
   const glm::vec3 contribution = get(light_.lit().contribution, lane);
   if (scene_.lights.no_shadow(light_.chosen(lane)))
     return shadow_.push_lit(waiting, contribution);

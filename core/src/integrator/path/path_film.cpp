@@ -6,9 +6,13 @@
 
 namespace lancer {
 
-void PathFilm::begin(std::span<const SampleAddress> addresses, std::span<SampleResult> results,
+void PathFilm::begin(std::span<const SampleAddress> addresses, std::span<SampleResult> results, Extras &extras,
                      std::vector<PathVertex> *trace) {
   trace_ = trace;
+  extras_ = &extras;
+  extras.begin(addresses.size(), layout_);
+  if (settings_.clamp_indirect > 0.0f)
+    indirect_groups_.begin(addresses.size(), layout_);
   // Passes of places are recorded from the first sample of each pixel alone; a trace records all vertices.
   only_combined_ = !trace && passes.only_places() && (!passes.places() || addresses.front().sample > 0);
   results_ = results;
@@ -48,7 +52,7 @@ void PathFilm::clamp(uint32_t sample) {
     kept += found * share;
   }
   if (factor == 1.0f)
-    return;
+    return add_indirect_groups(sample, glm::vec3(1.0f));
   std::fill_n(indirect_.begin() + ptrdiff_t(sample * sums()), sums(), glm::vec3(0.0f));
   indirect_[sample * sums()] = kept / paths;
   // Passes store the sum over the paths: scale them by the mean factor.
@@ -56,9 +60,16 @@ void PathFilm::clamp(uint32_t sample) {
   for (int channel = 0; channel < 3 && sums() > 1; ++channel)
     of_passes[channel] = all[channel] != 0.0f ? kept[channel] / all[channel] : 1.0f;
   passes.scale_indirect(results_[sample], of_passes);
+  add_indirect_groups(sample, of_passes);
 }
 
-void PathFilm::add(const Path &path, const glm::vec3 &radiance, bool environment) {
+void PathFilm::add_indirect_groups(uint32_t sample, const glm::vec3 &factor) {
+  const size_t first = size_t(sample) * layout_.channels();
+  for (uint32_t i = 0; i < 3 * layout_.groups; ++i)
+    extras_->channels[first + i] += indirect_groups_.channels[first + i] * factor[int(i % 3)];
+}
+
+void PathFilm::add(const Path &path, const glm::vec3 &radiance, bool environment, uint32_t group) {
   SampleResult &result = results_[path.sample];
   // Light that was scattered at most once is direct; clamping never changes it.
   const bool indirect = path.scatterings > 1;
@@ -76,8 +87,10 @@ void PathFilm::add(const Path &path, const glm::vec3 &radiance, bool environment
       result.radiance += seen;
     }
     passes.add_seen(result, seen, environment);
+    add_to_group(path.sample, group, seen, false);
     return;
   }
+  add_to_group(path.sample, group, radiance, indirect);
   if (indirect)
     indirect_[sum(path)] += radiance;
   else
@@ -91,6 +104,7 @@ void PathFilm::add_lit(const WaitingLight &waiting, const glm::vec3 &light) {
     result.light[kLightOcclusion] += light;
     return;
   }
+  add_to_group(waiting.target, waiting.group, light, waiting.indirect);
   if (waiting.indirect)
     indirect_[waiting.target * sums() + waiting.sum] += light;
   else
@@ -131,6 +145,7 @@ void PathFilm::record(const Path &path, const SurfaceStage &surfaces, uint32_t l
     surface = surfaces.surface(lane);
   else
     surface.p = get(surfaces.surfaces().p, lane);
+  surface.instance = surfaces.hit(lane).instance;
   record(path, surface, surfaces.material(lane), get(surfaces.means().normal, lane), recorded_opacity(surfaces, lane),
          surfaces.hit(lane).t);
   // Add the colours of the surface by component.
@@ -154,6 +169,7 @@ void PathFilm::record(const Path &path, const Surface &surface, const MaterialVi
   record.seen |= here;
   if (passes.mist())
     result.mist += (1.0f - mist_at(scene_, camera_, settings_, surface)) * mean(path.beta * opacity);
+  add_mattes(scene_, layout_, path.sample, surface.instance, material, mean(path.beta) * mean(opacity), *extras_);
 }
 
 void PathFilm::pass_absent(Path &path, const Ray &ray, HitStage &stage, size_t number, Hit &hit) {
@@ -180,11 +196,15 @@ void PathFilm::pass_absent(Path &path, const Ray &ray, HitStage &stage, size_t n
         trace(path, surface, met.t);
       if (awaits_surface(path)) {
         const double unit = glm::length(ray.d);
-        shader_.shade(surface,
-                      {.wo = glm::vec3(-glm::normalize(ray.d)),
-                       .footprint = float(cone_.base + (path.length + met.t * unit) * cone_.spread),
-                       .path = path.light_path((met.t - ray.tmin) * unit / scene_.normalisation.scale, met.t * unit)},
-                      absent_);
+        const View view{.wo = glm::vec3(-glm::normalize(ray.d)),
+                        .footprint = float(cone_.base + (path.length + met.t * unit) * cone_.spread),
+                        .path = path.light_path((met.t - ray.tmin) * unit / scene_.normalisation.scale, met.t * unit)};
+        shader_.shade(surface, view, absent_);
+        if (layout_.has_outputs() && !absent_.material->outputs.empty()) {
+          const std::span<const glm::vec4> values = shader_.outputs(*absent_.material, surface, view);
+          for (const Output &output : absent_.material->outputs)
+            add_output(layout_, path.sample, output, value_of(output.value, values), *extras_);
+        }
         record(path, surface, *absent_.material, absent_.bsdf.ns, absent_.opacity(), met.t);
       }
     }
@@ -213,9 +233,10 @@ bool PathFilm::miss(const Path &path) {
   return (settings_.passes & bit(Pass::Environment)) != 0;
 }
 
-WaitingLight PathFilm::waiting(const Path &path, const Floats (&share)[2][3], uint32_t lane) const {
+WaitingLight PathFilm::waiting(const Path &path, const Floats (&share)[2][3], uint32_t lane, uint32_t chosen) const {
   WaitingLight light;
   light.target = path.sample;
+  light.group = layout_.groups > 0 ? scene_.lights.group_of(scene_.geometry, chosen) : 0;
   light.sum = sum_of(path);
   light.indirect = path.scatterings > 0;
   for (int component = 0; component < 2 && passes.components(); ++component)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "integrator/aov/first_surface.h"
+#include "integrator/aov/surface_extras.h"
 #include "integrator/path/path_state.h"
 #include "integrator/sample.h"
 #include "integrator/stages/hit.h"
@@ -19,11 +20,13 @@ namespace lancer {
 class PathFilm {
 public:
   PathFilm(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
-      : passes(settings), scene_(scene), camera_(camera), settings_(settings), shader_(scene, &camera), cone_(camera) {}
+      : passes(settings), scene_(scene), camera_(camera), settings_(settings), layout_(settings.extras()),
+        shader_(scene, &camera), cone_(camera), sky_values_(scene.world.program.value_count()) {}
   void set_splits(const Splits &splits) { settings_.splits = splits; }
 
-  // Begins the next batch, whose results are written to the given span. trace: receives the vertices; may be null.
-  void begin(std::span<const SampleAddress> addresses, std::span<SampleResult> results, std::vector<PathVertex> *trace);
+  // Begins the next batch, whose results and extras are written to the given places. trace: receives the vertices; may be null.
+  void begin(std::span<const SampleAddress> addresses, std::span<SampleResult> results, Extras &extras,
+             std::vector<PathVertex> *trace);
   // Adds the indirect light to the results, clamped where the settings request it.
   void end();
   // Return the light gathered so far by a path, or by all paths of a sample.
@@ -42,16 +45,27 @@ public:
 
   // Adds light that a path transports to the camera: as seen directly while the path is in the camera's view, then as direct
   // light, and after a second scattering as indirect. environment: the light is the world's, which a transparent film hides.
-  void add(const Path &path, const glm::vec3 &radiance, bool environment);
-  // Returns the record of a lane's light sample that waits for its shadow ray. share: LitBlock::share.
-  WaitingLight waiting(const Path &path, const Floats (&share)[2][3], uint32_t lane) const;
+  // group: of the light, 0 = none.
+  void add(const Path &path, const glm::vec3 &radiance, bool environment, uint32_t group);
+  // Returns the record of a lane's light sample that waits for its shadow ray. share: LitBlock::share; chosen: the light.
+  WaitingLight waiting(const Path &path, const Floats (&share)[2][3], uint32_t lane, uint32_t chosen) const;
   // Adds the part of a light sample's contribution that its shadow ray transmits.
   void add_lit(const WaitingLight &waiting, const glm::vec3 &light);
   // Subtracts a share from the alpha of a sample.
   void cut(const Path &path, float share) { results_[path.sample].alpha -= share; }
 
-  // Whether this batch fills no pass but the picture: records stay unused.
-  bool only_combined() const { return only_combined_; }
+  // Whether passes read a surface that ends a path.
+  bool reads_end(const Path &path) const { return !only_combined_ && (trace_ || wants_guides(path) || wants_outputs(path)); }
+  // Whether outputs of the surface that a path meets are wanted.
+  bool wants_outputs(const Path &path) const { return layout_.has_outputs() && awaits_surface(path); }
+  // Adds the outputs of a lane's surface, and those of the world where a path of the camera leaves the scene.
+  void add_outputs(const Path &path, const SurfaceStage &surfaces, uint32_t lane) {
+    lancer::add_outputs(layout_, path.sample, surfaces, lane, *extras_);
+  }
+  void add_sky_outputs(const Path &path, const Ray &ray, const glm::dvec3 &eye) {
+    lancer::add_sky_outputs(scene_, camera_, settings_, path.sample, glm::normalize(ray.d), eye, path.light_path(0.0, 0.0),
+                            sky_values_, *extras_);
+  }
   // Fills the passes of a block's surfaces that the camera sees. number: of each lane's path; ends, nothing: bits of lanes that
   // scatter no light, and where a hole has left nothing. Returns the lanes that ask for ambient occlusion.
   uint32_t record(SurfaceStage &surfaces, std::span<const Path> paths, const size_t (&number)[kBlockLanes], uint32_t ends,
@@ -85,6 +99,7 @@ public:
   // distance: from the last surface, normalised units.
   void add_guides(const Path &path, const Mixture<float> &mixture, const glm::vec3 &wo, const glm::vec3 &transmittance,
                   double distance) {
+    guides_[path.sample].scattered = path.scatterings > 0;
     add_denoising_guides(scene_, camera_, mixture, wo, transmittance, distance, guides_[path.sample], results_[path.sample]);
   }
 
@@ -105,6 +120,12 @@ private:
     return sums() > 1 ? indirect_[(sample + 1) * sums() - 1] : glm::vec3(0.0f);
   }
   void clamp(uint32_t sample);
+  // Adds light to its group. Where clamping is requested, indirect light waits for it.
+  void add_to_group(uint32_t sample, uint32_t group, const glm::vec3 &light, bool indirect) {
+    Extras &to = indirect && settings_.clamp_indirect > 0.0f ? indirect_groups_ : *extras_;
+    to.add_light(layout_, sample, group, light);
+  }
+  void add_indirect_groups(uint32_t sample, const glm::vec3 &factor);
   void record(const Path &path, const Surface &surface, const MaterialView &material, const glm::vec3 &normal,
               const glm::vec3 &opacity, double t);
   void record(const Path &path, const SurfaceStage &surfaces, uint32_t lane);
@@ -125,11 +146,15 @@ private:
   const Scene &scene_;
   const Camera &camera_;
   IntegratorSettings settings_;
+  ExtraLayout layout_;
   Shader shader_; // of absent surfaces
   PixelCone cone_;
   Shaded absent_;
+  std::vector<glm::vec4> sky_values_; // of the world's nodes
   std::vector<PathVertex> *trace_ = nullptr;
-  bool only_combined_ = true;
+  Extras *extras_ = nullptr;
+  Extras indirect_groups_;    // where clamping is requested
+  bool only_combined_ = true; // this batch fills no pass but the picture: records stay unused
   std::span<SampleResult> results_;
   // Members indexed by the number of a sum.
   std::vector<glm::vec3> indirect_;

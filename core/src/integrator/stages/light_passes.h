@@ -8,6 +8,7 @@ namespace lancer {
 // Light that waits for its shadow ray.
 struct WaitingLight {
   uint32_t target = 0, sum = 0; // PATH: number of the sample in its batch, and of its sum of indirect light; CLASSIC: the ray
+  uint32_t group = 0;           // of the light, see Extras::add_light()
   bool indirect = false;        // scattered more than once
   bool occlusion = false;       // no light: the pass of ambient occlusion
   glm::vec3 share[2] = {glm::vec3(0.0f), glm::vec3(0.0f)}; // diffuse, glossy; the rest is transmission
@@ -19,7 +20,8 @@ public:
       : wanted_((settings.passes & kAnyLight) != 0), components_((settings.passes & kAnyComponent) != 0),
         occlusion_((settings.passes & bit(Pass::AmbientOcclusion)) != 0), mist_((settings.passes & bit(Pass::Mist)) != 0),
         uv_((settings.passes & bit(Pass::Uv)) != 0), guides_((settings.passes & kAnyGuide) != 0),
-        places_((settings.passes & kPlaces) != 0), only_places_((settings.passes & ~(kPlaces | kAlways)) == 0) {}
+        places_((settings.passes & kPlaces) != 0),
+        only_places_((settings.passes & ~(kPlaces | kAlways)) == 0 && !settings.mattes && !settings.extras().has_outputs()) {}
 
   // Whether any part of SampleResult::light is requested.
   bool wanted() const { return wanted_; }
@@ -58,7 +60,8 @@ public:
 private:
   static constexpr uint32_t kAnyLight = 2u * bit(Pass::TransmissionColor) - bit(Pass::Emission);
   static constexpr uint32_t kAnyComponent = 2u * bit(Pass::TransmissionColor) - bit(Pass::DiffuseDirect);
-  static constexpr uint32_t kAnyGuide = bit(Pass::Albedo) | bit(Pass::DenoisingNormal) | bit(Pass::DenoisingDepth);
+  static constexpr uint32_t kAnyGuide = bit(Pass::Albedo) | bit(Pass::DenoisingNormal) | bit(Pass::DenoisingDepth) |
+                                        bit(Pass::SpecularAlbedo) | bit(Pass::Roughness);
   static constexpr uint32_t kPlaces =
       bit(Pass::Depth) | bit(Pass::Position) | bit(Pass::ObjectIndex) | bit(Pass::MaterialIndex);
   static constexpr uint32_t kAlways = bit(Pass::Combined) | bit(Pass::Error) | bit(Pass::Halves);

@@ -29,21 +29,23 @@ template <class F> LANCER_LANE F smooth_step(F x) {
   return t * t * (3.0f - 2.0f * t);
 }
 
-// Returns the matt share of a lobe: 0 or 1, or a smooth step over twice the limit.
-template <class F> LANCER_LANE F matt_share(const Lobe<F> &lobe, bool blended) {
-  F alpha(0.0f);
+// Returns the alpha of a lobe's facets: 0 of a mirror, 1 of a lobe without facets.
+template <class F> LANCER_LANE F alpha_of(const Lobe<F> &lobe) {
   switch (lobe.shape) {
   case LobeShape::Mirror:
   case LobeShape::Dielectric:
-    break;
+    return F(0.0f);
   case LobeShape::Beckmann:
   case LobeShape::Microfacet:
   case LobeShape::Ashikhmin:
-    alpha = sqrt(lobe.alpha_x * lobe.alpha_y);
-    break;
+    return sqrt(lobe.alpha_x * lobe.alpha_y);
   default:
     return F(1.0f);
   }
+}
+
+// Returns the matt share of a lobe of this alpha: 0 or 1, or a smooth step over twice the limit.
+template <class F> LANCER_LANE F matt_share(F alpha, bool blended) {
   if (blended)
     return smooth_step(alpha / (2.0f * kMirrorLike));
   return select(alpha > kMirrorLike, F(1.0f), F(0.0f));
@@ -54,6 +56,7 @@ template <class F> struct Mixture {
   using V = Vec3<F>;
   V normal{F(0.0f)}, diffuse{F(0.0f)}, specular{F(0.0f)};
   F all{0.0f}, matt{0.0f};
+  F roughness{0.0f}; // as of shader nodes
 };
 
 // Without blending, transmitted light is treated as mirrored. ended: lanes at the end of a path, where no lobe scatters.
@@ -70,16 +73,20 @@ LANCER_LANE Mixture<F> mix(const Bsdf<F> &bsdf, const Vec3<F> &transmittance, Ma
     const Lobe<F> &lobe = bsdf.lobes[i];
     const MaskOf<F> there = (!black(lobe.color)) & !ended;
     const Vec3<F> albedo = lobe.rules < Rules::Blender52 ? lobe.albedo : lobe.albedo - lobe.through + shown_through(lobe);
-    const F weight = select(there, abs(mean(albedo)), zero), share = matt_share(lobe, blended);
+    const F weight = select(there, abs(mean(albedo)), zero), alpha = alpha_of(lobe);
+    const F share = matt_share(alpha, blended);
     // Cycles shows denoisers the direction of Huang's fibres.
     const Frame<F> &frame = bsdf.frames[lobe.frame];
     mixture.normal += weight * (is_hair(lobe, Hair::Huang) ? frame.t : frame.n);
     mixture.all += weight;
     mixture.matt += share * weight;
+    if (blended)
+      mixture.roughness += weight * sqrt(alpha);
     mixture.diffuse = select(there, mixture.diffuse + share * albedo, mixture.diffuse);
     mixture.specular = select(there, mixture.specular + (1.0f - share) * albedo, mixture.specular);
   }
   mixture.normal = select(mixture.all > zero, mixture.normal / mixture.all, mixture.normal);
+  mixture.roughness = select(mixture.all > zero, mixture.roughness / mixture.all, zero);
   return mixture;
 }
 

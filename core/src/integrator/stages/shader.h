@@ -27,6 +27,11 @@ public:
 
   // seen_by_camera: see Bsdf.
   void shade(const Surface &surface, const View &view, Shaded &result, bool seen_by_camera = true);
+  // Returns the values of a material's outputs, as their parameters read them; valid until the next call.
+  std::span<const glm::vec4> outputs(const MaterialView &material, const Surface &surface, const View &view) {
+    nodes_.run(material.program, material.output_nodes, surface, view);
+    return nodes_.values();
+  }
   // Returns the share of a shadow ray's light that passes straight through. path: of the ray up to there.
   glm::vec3 transmittance(const Ray &ray, const Hit &hit, const LightPath<float> &path);
   // Whether the surface is present at a hit on a mesh whose cutout has may_end set. Light passes an absent surface as if there

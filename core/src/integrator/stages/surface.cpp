@@ -118,10 +118,12 @@ void SurfaceStage::find() {
 
 void SurfaceStage::run_nodes(std::span<const View> views) {
   const MaterialView &material = *materials_.material[0];
-  if (!material.surface_nodes.empty()) {
+  if (!material.surface_nodes.empty() || outputs_asked_)
     place_nodes(material, views);
+  if (!material.surface_nodes.empty())
     node_kernel_.run(material.program, material.surface_nodes, nodes_, values_.data());
-  }
+  if (outputs_asked_)
+    node_kernel_.run(material.program, material.output_nodes, nodes_, values_.data());
   for (uint32_t lane = 0; lane < count_; ++lane) {
     const MaterialView &of = *materials_.material[lane];
     emission_[lane] = value(of.emission, lane);
@@ -260,7 +262,7 @@ float SurfaceStage::holdout(uint32_t lane) const {
 
 Mixture<float> SurfaceStage::mixture(uint32_t lane) const {
   return {get(means_.mixed_normal, lane), get(means_.mixed_diffuse, lane), get(means_.mixed_specular, lane),
-          means_.mixed_all[lane], means_.mixed_matt[lane]};
+          means_.mixed_all[lane],         means_.mixed_matt[lane],         means_.mixed_roughness[lane]};
 }
 
 } // namespace lancer

@@ -81,7 +81,8 @@ struct MeansWanted {
 struct alignas(64) MeanBlock {
   Floats normal[3], matt_normal[3]; // mean normals of all lobes and of the diffuse ones
   Floats shown[3][3];               // colours of the passes, by component
-  Floats mixed_matt, mixed_all, mixed_diffuse[3], mixed_specular[3], mixed_normal[3]; // Mixture of lobe_means.h
+  Floats mixed_matt, mixed_all, mixed_roughness, mixed_diffuse[3], mixed_specular[3],
+      mixed_normal[3]; // Mixture of lobe_means.h
 };
 
 struct SurfaceKernel {
@@ -128,10 +129,12 @@ public:
   // Computes the surfaces of all lanes.
   void find();
   // Evaluates the nodes of the material, if it has any. view_of(lane): returns the View of a lane.
-  template <class ViewOf> void ask_nodes(ViewOf &&view_of) {
+  // asks_outputs: also those of its outputs.
+  template <class ViewOf> void ask_nodes(ViewOf &&view_of, bool asks_outputs = false) {
     const MaterialView &material = *materials_.material[0];
     if (material.fixed() || (materials_.leaving && !material.bends_exits))
       return;
+    outputs_asked_ = asks_outputs && !material.output_nodes.empty();
     View views[kBlockLanes];
     for (uint32_t lane = 0; lane < count_; ++lane)
       views[lane] = view_of(lane);
@@ -204,6 +207,7 @@ private:
   PixelCone cone_;
   const MeansWanted wanted_;
   uint32_t count_ = 0;
+  bool outputs_asked_ = false;
   const Ray *ray_of_[kBlockLanes];
   const Hit *hit_of_[kBlockLanes];
   HitBlock hits_{};

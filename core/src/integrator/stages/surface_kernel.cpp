@@ -133,6 +133,7 @@ void describe(const MaterialBlock &materials, const LobeBlock &lobes, const Mean
     store3(means.mixed_specular, first, mixture.specular);
     store(means.mixed_all + first, mixture.all);
     store(means.mixed_matt + first, mixture.matt);
+    store(means.mixed_roughness + first, mixture.roughness);
   }
 }
 

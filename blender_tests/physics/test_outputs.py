@@ -1,0 +1,99 @@
+"""Outputs of materials and of the world: AOVs of the surfaces that the camera sees."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from tiny_scenes import lambert, move, plane, quad, rgb, scene, veiled
+
+from addon.bindings.abi import Coordinate, Integrator, LobeKind, NodeKind, Pass, PassKind
+from addon.bindings.numbered_pass import NumberedPass
+from addon.bindings.session import Session
+from addon.bindings.snapshot import Instance, Lobe, Material, Node, NodeRef, Output, World
+
+COLOR, VALUE = NumberedPass(PassKind.AOV_COLOR), NumberedPass(PassKind.AOV_VALUE)
+
+
+def read(snapshot, *passes):
+    with Session.upload(snapshot) as session:
+        assert session.render_all()
+        return [session.read(which)[0, 0].tolist() for which in passes]
+
+
+def with_outputs(material, color, value=0.0, **fields):
+    outputs = Output(value=color), Output(is_color=False, value=value)
+    return dataclasses.replace(material, outputs=outputs, **fields)
+
+
+def shown(*materials, **settings):
+    """Return squares above each other, the first one on top, seen from above."""
+    squares = [Instance(mesh=0, matrix=move(z=-n), materials=(n,)) for n in range(len(materials))]
+    given = {"samples": 8, "aov_colors": 1, "aov_values": 1, **settings}
+    return scene(squares, materials, meshes=[quad()], **given)
+
+
+@pytest.mark.parametrize("integrator", Integrator)
+def test_a_solid_surface_gives_its_values(integrator):
+    surface = with_outputs(lambert(), (0.25, -3.0, 1e5), -0.5)
+    assert read(shown(surface, integrator=integrator), COLOR, VALUE) == [[0.25, -3.0, 1e5, 1.0], [-0.5]]
+
+
+def test_nodes_give_values_at_the_place():
+    nodes = (Node(NodeKind.COORDINATE, option=Coordinate.POSITION),)
+    surface = with_outputs(lambert(), NodeRef(0), NodeRef(0), nodes=nodes)
+    (color, value) = read(shown(surface), COLOR, VALUE)
+    # The camera looks at the origin through a pencil 1e-6 wide.
+    assert color == pytest.approx([0.0, 0.0, 0.0, 1.0], abs=1e-6) and value == pytest.approx([0.0], abs=1e-6)
+
+
+def test_surfaces_add_up_to_the_first_that_is_opaque_enough():
+    """As in Cycles, values have no weight: a veil below the threshold and the ground both give theirs."""
+    veil, ground = with_outputs(veiled(lambert(), 0.25), (1.0, 0.0, 0.0), 2.0), with_outputs(lambert(), (0.0, 1.0, 0.0), 4.0)
+    color, value = read(shown(veil, ground, samples=4096), COLOR, VALUE)
+    assert color[0] == 1.0
+    # Paths reach the ground with the probability of passing, at least the transmittance.
+    assert (
+        0.7 < color[1] <= 1.0 and color[3] == pytest.approx(1.0 + color[1]) and value == pytest.approx([2.0 + 4.0 * color[1]])
+    )
+    # Above the threshold, the veil ends the search.
+    color, value = read(shown(veil, ground, alpha_threshold=0.2), COLOR, VALUE)
+    assert color == [1.0, 0.0, 0.0, 1.0] and value == [2.0]
+
+
+def test_values_that_are_no_numbers_count_as_nothing():
+    broken = with_outputs(lambert(), (float("nan"), float("inf"), 1.0), float("nan"))
+    color, value = read(shown(broken), COLOR, VALUE)
+    assert color[0] == 0.0 and np.isfinite(color).all() and value == [0.0]
+
+
+def test_passes_that_the_settings_do_not_count_are_left_out():
+    material = dataclasses.replace(lambert(), outputs=(Output(number=5, value=(1.0, 1.0, 1.0)),))
+    assert read(shown(material), COLOR) == [[0.0, 0.0, 0.0, 0.0]]
+
+
+def test_the_world_gives_its_values_where_nodes_make_it():
+    """As in Cycles, a world of one colour gives none, nor one that a transparent film hides."""
+    nodes = (Node(NodeKind.COORDINATE, option=Coordinate.POSITION), Node(NodeKind.SEPARATE, option=2, inputs=(NodeRef(0),)))
+    outputs = Output(value=(0.5, 0.25, 2.0)), Output(is_color=False, value=NodeRef(1))
+    sky = World(radiance=NodeRef(0), nodes=nodes, outputs=outputs)
+    given = {"samples": 4, "aov_colors": 1, "aov_values": 1}
+
+    def seen(world, **settings):
+        return read(
+            dataclasses.replace(scene([plane(0, move(z=5))], [lambert()], **given | settings), world=world), COLOR, VALUE
+        )
+
+    # The pencil looks down.
+    assert seen(sky) == [[0.5, 0.25, 2.0, 1.0], [-1.0]]
+    assert seen(World(radiance=(1.0, 1.0, 1.0), outputs=outputs[:1])) == [[0.0] * 4, [0.0]]
+    assert seen(sky, film_transparent=True) == [[0.0] * 4, [0.0]]
+    assert seen(sky, film_transparent=True, passes=(Pass.ENVIRONMENT,)) == [[0.5, 0.25, 2.0, 1.0], [-1.0]]
+
+
+def test_only_the_camera_sees_outputs():
+    """A mirror's image of a surface gives nothing."""
+    mirror = Material("mirror", lobes=(Lobe(LobeKind.MIRROR, color=rgb(1.0)),))
+    ceiling = Instance(mesh=0, matrix=move(z=3.0), materials=(1,))
+    surface = with_outputs(lambert(), (1.0, 1.0, 1.0), 1.0)
+    seen = scene([plane(0), ceiling], [mirror, surface], meshes=[quad()], samples=4, max_bounces=4, aov_colors=1, aov_values=1)
+    assert read(seen, COLOR, VALUE) == [[0.0] * 4, [0.0]]

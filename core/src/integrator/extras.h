@@ -1,0 +1,53 @@
+// What samples give beside their SampleResults, as much as the settings ask for: channels of light groups and of outputs, and
+// mattes.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+namespace lancer {
+
+enum MatteKind : uint32_t { kObjectMattes = 0, kMaterialMattes = 1, kAssetMattes = 2, kMatteKinds = 3 };
+
+// The channels of a sample in their order: three of each light group, four of each colour, one of each value.
+struct ExtraLayout {
+  uint32_t groups = 0, colors = 0, values = 0;
+  uint32_t mattes = 0; // bits 1u << MatteKind
+
+  uint32_t channels() const { return 3 * groups + 4 * colors + values; }
+  uint32_t color(uint32_t number) const { return 3 * groups + 4 * number; }
+  uint32_t value(uint32_t number) const { return color(colors) + number; }
+  bool has_outputs() const { return colors + values > 0; }
+  bool has_mattes(uint32_t kind) const { return (mattes >> kind & 1u) != 0; }
+};
+
+// A surface's share of a sample. sample: its number; ids: by MatteKind, 0 = none.
+struct MatteShare {
+  uint32_t sample = 0;
+  float share = 0.0f;
+  std::array<uint32_t, kMatteKinds> ids{};
+};
+
+// The extras of samples that follow one another.
+struct Extras {
+  std::vector<float> channels; // [sample][ExtraLayout::channels()]
+  std::vector<MatteShare> mattes;   // in no order
+
+  void begin(size_t samples, const ExtraLayout &layout) {
+    channels.assign(samples * layout.channels(), 0.0f);
+    mattes.clear();
+  }
+  // Adds to the light of a sample from a group, 1 being the first; 0 = none.
+  void add_light(const ExtraLayout &layout, uint32_t sample, uint32_t group, const glm::vec3 &light) {
+    if (group == 0 || group > layout.groups)
+      return;
+    float *const to = channels.data() + size_t(sample) * layout.channels() + 3 * (group - 1);
+    for (int i = 0; i < 3; ++i)
+      to[i] += light[i];
+  }
+};
+
+} // namespace lancer
