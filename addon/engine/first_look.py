@@ -6,6 +6,7 @@ import math
 import numpy as np
 
 from ..bindings.enums import Pass
+from ..bindings.numbered_pass import extras
 from ..bindings.session import Session
 
 # Pixels of the coarse picture: one sample of each takes a few milliseconds in most scenes.
@@ -43,7 +44,14 @@ def _coarse_picture(session, is_over):
     across, up = math.ceil(width / side), math.ceil(height / side)
     coarse = camera.replaced(width=across, height=up, region_width=across, region_height=up)
     settings = dataclasses.replace(
-        session.settings, samples=1, passes=(Pass.COMBINED,), target_error=0.0, time_limit=0.0, split_lights=1, split_paths=1
+        session.settings,
+        samples=1,
+        passes=(Pass.COMBINED,),
+        target_error=0.0,
+        time_limit=0.0,
+        split_lights=1,
+        split_paths=1,
+        **extras(()),
     )
     with Session(scene, coarse, settings) as first:
         first.render(0, 1)

@@ -5,16 +5,19 @@ from typing import NamedTuple
 import bpy
 import numpy as np
 
-from ..bindings.enums import Pass
-from ..bindings.pass_names import NAMES
+from ..bindings.enums import Pass, PassKind
+from ..bindings.numbered_pass import NumberedPass
+from ..bindings.pass_names import CRYPTOMATTE_CHANNELS, CRYPTOMATTES, NAMES
 from ..denoise import view_layer as denoise
+from ..export.light_groups import light_groups_of
+from ..export.outputs import aovs_of
 
 
 class RenderPass(NamedTuple):
     name: str  # Blender's name, by which compositors and files refer to the pass
     channels: str
     kind: str  # VALUE, VECTOR or COLOR
-    source: Pass | None  # None: the engine fills it after denoising
+    source: Pass | NumberedPass | None  # None: the engine fills it after denoising
 
 
 # Name of the view layer's switch use_pass_*, source, kind.
@@ -39,8 +42,16 @@ _TABLE = (
     ("environment", Pass.ENVIRONMENT, "COLOR"),
     ("ambient_occlusion", Pass.AMBIENT_OCCLUSION, "COLOR"),
 )
+# Suffix of the view layer's switch use_pass_cryptomatte_*.
+_CRYPTOMATTES = (
+    ("object", PassKind.OBJECT_MATTES),
+    ("material", PassKind.MATERIAL_MATTES),
+    ("asset", PassKind.ASSET_MATTES),
+)
+_SAMPLE_COUNT, _RENDER_TIME = NumberedPass(PassKind.SAMPLES), NumberedPass(PassKind.RENDER_TIME)
 _DENOISED_ERROR = "Lancer Denoised Error"
 _LONG_NAMES = bpy.app.version >= (5, 0)
+_ALL_GUIDES = bpy.app.version >= (5, 2)
 
 
 def _pass(source, kind):
@@ -58,16 +69,34 @@ def render_passes(scene, view_layer):
     for switch, source, kind in _TABLE:
         if getattr(view_layer, "use_pass_" + switch):
             yield _pass(source, kind)
+    # These switches belong to Cycles, an add-on that may be disabled.
+    cycles = getattr(view_layer, "cycles", None)
+    if getattr(cycles, "pass_debug_sample_count", False):
+        yield RenderPass("Debug Sample Count", "X", "VALUE", _SAMPLE_COUNT)
+    if getattr(cycles, "pass_render_time", False):
+        yield RenderPass("Render Time", "X", "VALUE", _RENDER_TIME)
+    # Each pass has two levels.
+    levels = range((min(16, view_layer.pass_cryptomatte_depth) + 1) // 2)
+    for switch, kind in _CRYPTOMATTES:
+        for level in levels if getattr(view_layer, "use_pass_cryptomatte_" + switch) else ():
+            name = f"{CRYPTOMATTES[kind]}{level:02d}"
+            yield RenderPass(name, CRYPTOMATTE_CHANNELS, "COLOR", NumberedPass(kind, level))
     if denoise.wanted(scene, view_layer):
         yield RenderPass("Noisy Image", "RGBA", "COLOR", Pass.COMBINED)
-    # The switch belongs to Cycles, an add-on that may be disabled.
-    denoising = getattr(getattr(view_layer, "cycles", None), "denoising_store_passes", False)
+    denoising = getattr(cycles, "denoising_store_passes", False)
     if denoising:
         yield _pass(Pass.DENOISING_NORMAL, "VECTOR")
     if denoising or scene.lancer.use_pass_albedo:
         yield _pass(Pass.ALBEDO, "COLOR")
+    if denoising and _ALL_GUIDES:
+        yield _pass(Pass.SPECULAR_ALBEDO, "COLOR")
+        yield _pass(Pass.ROUGHNESS, "VALUE")
     if denoising:
         yield _pass(Pass.DENOISING_DEPTH, "VALUE")
+    for aov in aovs_of(view_layer):
+        yield RenderPass(aov.name, "RGBA" if aov.is_color else "X", "COLOR" if aov.is_color else "VALUE", aov.source)
+    for name, source in light_groups_of(view_layer):
+        yield RenderPass(f"Combined_{name}", "RGB", "COLOR", source)
     if scene.lancer.use_pass_error:
         yield _pass(Pass.ERROR, "VALUE")
         if denoise.wanted(scene, view_layer):
@@ -85,12 +114,14 @@ def register_passes(engine, scene, view_layer):
 
 
 def fill(layer, read, wanted):
-    """Fill the passes of a result's layer; read(Pass) returns (height, width, channels) float32."""
+    """Fill the passes of a result's layer; read(source) returns (height, width, channels) float32."""
     sources = {item.name: item.source for item in wanted}
     for target in layer.passes:
         source = sources.get(target.name)
         if source is not None:
-            _upload(target, np.ascontiguousarray(read(source), np.float32))
+            image = np.ascontiguousarray(read(source), np.float32)
+            # As in Cycles, samples are counted as a share of those of the pixel with the most.
+            _upload(target, image / max(1.0, float(image.max())) if source == _SAMPLE_COUNT else image)
 
 
 def show_denoised(layer, denoised):

@@ -10,6 +10,7 @@ import bpy
 from ..bindings.abi import LancerError
 from ..bindings.session import Cancelled, Scene, Session
 from ..denoise import view_layer as denoise
+from ..export.mattes import metadata
 from ..export.moving_scene import export_picture
 from ..export.scene import ExportOptions
 from ..export.settings import threads_of
@@ -58,6 +59,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
     _snapshot = None
     _picture = None
     _gave_up = False
+    _metadata = None  # of mattes, by name
     _ahead = None  # the shared_scenes.Ahead of the export
     _following = None  # the kept_pictures.Following
     _later = None  # the Later of the snapshot
@@ -201,6 +203,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         if denoise.ready(scene, view_layer):
             settings = denoise.prepared(settings, passes.sources(wanted))
         self._snapshot.set("settings", settings)
+        self._metadata = metadata(view_layer.name, self._snapshot, passes.sources(wanted))
         self._tell(scene, messages)
         is_kept = kept_pictures.of(scene) is not None
         self._later = Later(scene, self._snapshot, is_kept, self._is_over, lambda messages: self._tell(scene, messages))
@@ -266,6 +269,9 @@ class LancerRenderEngine(bpy.types.RenderEngine):
                         self._tell(scene, Messages([denoiser.failure]))
                 if denoised is not None:
                     passes.show_denoised(result.layers[0], denoised)
+                stamped = self.get_result()
+                for name, value in self._metadata.items():
+                    stamped.stamp_data_add_field(name, value)
                 self._tell(scene, account(self, scene, layer, session, schedule, denoised, self._later.uses))
             finally:
                 # Keep the unfinished picture, after Esc too.

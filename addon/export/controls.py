@@ -16,7 +16,8 @@ _PASSES = (
     "use_pass_material_index", "use_pass_diffuse_direct", "use_pass_diffuse_indirect", "use_pass_diffuse_color",
     "use_pass_glossy_direct", "use_pass_glossy_indirect", "use_pass_glossy_color", "use_pass_transmission_direct",
     "use_pass_transmission_indirect", "use_pass_transmission_color", "use_pass_emit", "use_pass_environment",
-    "use_pass_ambient_occlusion",
+    "use_pass_ambient_occlusion", "use_pass_cryptomatte_object", "use_pass_cryptomatte_material", "use_pass_cryptomatte_asset",
+    "pass_cryptomatte_depth",
 )  # fmt: skip
 
 
@@ -45,7 +46,8 @@ CONTROLS = (
     Controls("CyclesRenderSettings", ("feature_set",), before=(5, 0)),
     Controls("ViewLayer", ("use_sky", "use_solid", "material_override", "samples", "pass_alpha_threshold", *_PASSES)),
     Controls("ViewLayer", ("world_override",), since=(4, 2)),
-    Controls("CyclesRenderLayerSettings", ("denoising_store_passes", "use_denoising")),
+    Controls("CyclesRenderLayerSettings", ("denoising_store_passes", "use_denoising", "pass_debug_sample_count")),
+    Controls("CyclesRenderLayerSettings", ("pass_render_time",), since=(5, 0)),
     Controls("World", ("use_nodes", "color"), before=(5, 0)),
     Controls("WorldLighting", ("distance",)),
     Controls("WorldMistSettings", ("start", "depth", "falloff")),

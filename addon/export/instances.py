@@ -6,10 +6,13 @@ from typing import NamedTuple
 import bpy
 import numpy as np
 
+from ..bindings.enums import PassKind
+from ..bindings.numbered_pass import MATTES, NumberedPass
 from ..bindings.snapshot import InstanceTable
 from ..messages.severity import Severity
 from .apart import read_infos
 from .lights import export_lamp_nodes, export_light
+from .mattes import ids
 from .object_attributes import LAMPS_ARE_OBJECTS, AttributeReader, read_object_attributes
 from .objects import Objects
 from .unsupported import check_hair
@@ -97,6 +100,8 @@ class Instances:
         self._narrowed = {}
         self._checked_hair = set()
         self._names = []  # of rows that share a look and a name
+        self._mattes = [kind for kind in MATTES if NumberedPass(kind) in options.passes]
+        self._assets = []  # of the same rows: the names of the objects' topmost parents, where mattes are wanted
         self._geometries = {}
         self.geometries = []  # of the same rows: equal numbers for objects that share one geometry in Cycles
         self._looks = array("I")
@@ -176,7 +181,15 @@ class Instances:
         infos = None
         if any(self._objects.materials.tell_apart(look.slots) for look in looks):
             infos = read_infos(self.depsgraph.object_instances, entries, _POLL_EVERY, poll)
+        mattes = {}
+        if PassKind.OBJECT_MATTES in self._mattes:
+            mattes["object_mattes"] = ids(self._names)[row_of]
+        if PassKind.ASSET_MATTES in self._mattes:
+            mattes |= {"asset_mattes": ids(self._assets)[row_of], "asset_names": tuple(dict.fromkeys(self._assets))}
+        groups = column([look.light_group for look in looks])
         return InstanceTable(
+            **mattes,
+            light_groups=groups if groups.any() else None,
             attributes=self._attributes(look_of, entries, poll),
             matrices=matrices,
             kinds=column([look.kind for look in looks]),
@@ -223,6 +236,8 @@ class Instances:
             return -1
         self._looks.append(look)
         self._names.append(name)
+        if PassKind.ASSET_MATTES in self._mattes:
+            self._assets.append(_top_parent(owner).name)
         # To Cycles an object that has materials of its own shares its mesh with its instances alone.
         is_own = any(slot.link == "OBJECT" for slot in owner.material_slots)
         key = data_key, original_key if is_own else None
@@ -242,7 +257,8 @@ class Instances:
             shine = self._lamp_nodes(thing, entry)
             light = export_light(thing, entry.matrix_world, self.messages, self.depsgraph, hidden, shine)
             if light is not None:
-                self.lights.append(light)
+                group = self._objects.groups.get(thing.lightgroup, 0)
+                self.lights.append(light.replaced(light_group=group) if group else light)
         elif thing.type not in _SHOWN_AS_MESH and thing.type not in _SHOWS_NOTHING:
             text = f"object '{thing.name}': type {thing.type} is not supported, it is left out"
             self.messages.add(text, f"feature:{thing.type.lower()} object", severity=Severity.LEFT_OUT)
@@ -261,3 +277,10 @@ class Instances:
         if key not in self._checked_hair:
             self._checked_hair.add(key)
             check_hair(thing, self.messages)
+
+
+def _top_parent(thing):
+    """Return the topmost parent of an object, which is the asset that it belongs to; the object itself without one."""
+    while thing.parent is not None:
+        thing = thing.parent
+    return thing

@@ -13,7 +13,9 @@ from .course_models import PARAMETERS, lobes_of
 from .graph import NodeGraph
 from .hit_attributes import of_all_hits
 from .images import Images
+from .mattes import DEFAULT_SURFACE, ids
 from .normals import bump, displacement_height
+from .outputs import read_outputs
 from .shader_cache import ShaderCache, Sources
 from .sockets import RULES, output_node
 from .surface import Surface
@@ -25,7 +27,7 @@ _DEFAULT_LOBE = (
     if bpy.app.version < (5, 0)
     else snapshot.Lobe(LobeKind.PRINCIPLED, (1.0, 1.0, 1.0), rules=RULES, principled=snapshot.Principled(rules=RULES))
 )
-_DEFAULT = snapshot.Material(name="default grey", lobes=(_DEFAULT_LOBE,))
+_DEFAULT = snapshot.Material(name=DEFAULT_SURFACE, lobes=(_DEFAULT_LOBE,), matte=int(ids([DEFAULT_SURFACE])[0]))
 _APART = (ObjectFact.COLOR, ObjectFact.RANDOM)  # values of OBJECT_INFO that the export reads only on request
 # Cycles' filter width, in pixels, of the bump that replaces displacement.
 _BUMP_WIDTH = 0.1 if bpy.app.version >= (4, 5) else 1.0
@@ -48,6 +50,7 @@ class Materials:
         self.depsgraph = depsgraph
         self._shaders = ShaderCache(Images() if images is None else images) if shaders is None else shaders
         self.list = []
+        self.aovs = ()  # that the materials fill
         self._numbers = {}
         self._attributes = []
         self._object_attributes = []
@@ -67,7 +70,7 @@ class Materials:
 
     def _read(self, material, asker):
         def read(messages, images, value):
-            return export_material(material, messages, asker, images, self.depsgraph)
+            return export_material(material, messages, asker, images, self.depsgraph, self.aovs)
 
         return self._shaders.find(material, self.messages, read, asker)
 
@@ -97,8 +100,11 @@ def _object_attributes(material):
     return {node.name for node in material.nodes if (node.kind, node.option) == (NodeKind.OBJECT_INFO, ObjectFact.ATTRIBUTE)}
 
 
-def export_material(material, messages, asker, images, depsgraph):
-    """Return the Exported of a material. asker is the name of the first object with the material, which messages include."""
+def export_material(material, messages, asker, images, depsgraph, aovs=()):
+    """Return the Exported of a material. asker is the name of the first object with the material, which messages include.
+
+    aovs: the Aovs that it may fill.
+    """
     who = f"material '{material.name}'" + ("" if asker is None else f" on object '{asker}'")
     own = material.lancer
     graph = NodeGraph(who, messages, images, depsgraph)
@@ -107,6 +113,7 @@ def export_material(material, messages, asker, images, depsgraph):
         "name": material.name,
         "ambient": messages.color(own.ka, who, "ambient colour"),
         "material_index": max(0, material.pass_index),
+        "matte": int(ids([material.name])[0]),
         "flags": _flags(material),
     }
     if own.model != "NODES":
@@ -114,7 +121,7 @@ def export_material(material, messages, asker, images, depsgraph):
     if bpy.app.version < (5, 0) and not material.use_nodes:
         color = messages.color(material.diffuse_color, who, "viewport colour")
         return Exported(snapshot.Material(lobes=(snapshot.Lobe(LobeKind.LAMBERT, color),), **common))
-    values = _from_nodes(material, graph)
+    values = _from_nodes(material, graph, aovs)
     common["flags"] |= values.pop("flags", 0)
     common["ambient"] = _color(graph.add(common["ambient"], values.pop("ambient", 0.0)))
     exported = snapshot.Material(nodes=graph.nodes, **values, **common)
@@ -155,7 +162,7 @@ def _own_model(own, who, messages):
     return tuple(lobe for lobe in lobes if any(lobe.color))
 
 
-def _from_nodes(material, graph):
+def _from_nodes(material, graph, aovs):
     """Return the fields of a snapshot.Material from its node tree."""
     who, messages, tree = graph.owner, graph.messages, graph.tree_of(material)
     output = output_node(tree, "OUTPUT_MATERIAL") if tree is not None else None
@@ -177,6 +184,7 @@ def _from_nodes(material, graph):
         values["flags"] = values.get("flags", 0) | int(MaterialFlag.NOT_A_LIGHT)
     return {
         **values,
+        "outputs": read_outputs(graph, tree, aovs),
         "lobes": surface.lobes,
         "portals": surface.portals,
         "ambient": surface.ambient,

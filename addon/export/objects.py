@@ -8,6 +8,7 @@ import numpy as np
 from ..bindings.enums import InstanceFlag, InstanceKind, Ray, Shading
 from ..messages.severity import Severity
 from .attributes import POLYGONS
+from .light_groups import group_numbers
 from .mesh import export_mesh, read_positions, shown_mesh
 from .mesh_differences import differences, lost_by_exact_shape
 from .subdivision.divider import PLACES_OTHERWISE, size_in_words
@@ -43,6 +44,7 @@ class Look(NamedTuple):
     flags: int  # InstanceFlag bits
     terminator: float
     placement: int  # of Objects.placements; -1 for none
+    light_group: int  # 0 for none
 
 
 class Objects:
@@ -61,6 +63,7 @@ class Objects:
         self.meshes = []
         self.looks = []
         self.placements = []
+        self.groups = group_numbers(depsgraph.view_layer, options.passes)
         self._numbers = {}
         self._meshes = {}
         self._differences = {}  # messages by slots and mesh
@@ -131,7 +134,8 @@ class Objects:
         if None in materials:
             self._tell_empty(name, materials, used)
         index, shading = max(0, thing.pass_index), Shading[own.shading]
-        look = Look(kind, mesh, slots, index, shading, *sight, _terminator(owner), placement)
+        group = self.groups.get(owner.lightgroup, 0) if self.groups else 0
+        look = Look(kind, mesh, slots, index, shading, *sight, _terminator(owner), placement, group)
         number = self._numbers.setdefault(look, len(self.looks))
         if number == len(self.looks):
             self.looks.append(look)

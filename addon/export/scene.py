@@ -11,8 +11,10 @@ from .even_normals import with_even_normals
 from .flat import report_flat
 from .images import Images
 from .instances import Instances
+from .light_groups import group_numbers
 from .materials import Materials
 from .motion import read_motion
+from .outputs import rendered_aovs
 from .scene_state import scene_state
 from .settings import export_settings, world_of
 from .shader_cache import ShaderCache
@@ -81,11 +83,13 @@ def export_scene(depsgraph, options=None, poll=None):
     materials = Materials(messages, override, images, depsgraph, shaders)
     in_view = options.view is not None
     divider = Divider(depsgraph, options.dicing if in_view else camera, messages, in_view)
+    aovs = rendered_aovs(view_layer, options.passes)
+    materials.aovs = aovs
     instances = Instances(depsgraph, materials, messages, shaders, divider, options)
     instances.collect(obey)
 
     def read_sky(messages, images, value):
-        return export_world(sky, images, depsgraph, messages)
+        return export_world(sky, images, depsgraph, messages, aovs)
 
     sky = world if view_layer.use_sky else None
     exported = export_world(None, images, depsgraph, messages) if sky is None else shaders.find(sky, messages, read_sky)
@@ -95,7 +99,7 @@ def export_scene(depsgraph, options=None, poll=None):
         materials=tuple(materials.list),
         lights=tuple(instances.lights if parts is None else parts.lights(instances.lights)),
         images=tuple(images.list),
-        world=exported.world,
+        world=_grouped(exported.world, sky, group_numbers(view_layer, options.passes)),
     )
     obey()
     if options.shutter is not None:
@@ -106,6 +110,12 @@ def export_scene(depsgraph, options=None, poll=None):
         moves_freely = not (instances.has_lamp_instances or divider.depends_on_places)
         parts.end(snapshot, messages, instances.places if moves_freely else None, instances.geometries, state)
     return _placed(snapshot, instances.geometries, messages, options, camera, settings), messages
+
+
+def _grouped(world, sky, groups):
+    """Return a snapshot.World with the number of its light group. sky: Blender's world, or None."""
+    group = 0 if sky is None else groups.get(sky.lightgroup, 0)
+    return world.replaced(light_group=group) if group else world
 
 
 def _placed(snapshot, geometries, messages, options, camera, settings):

@@ -17,7 +17,9 @@ def scene_state(depsgraph):
     world = getattr(layer, "world_override", None) or scene.world
     dicing = getattr(getattr(scene, "cycles", None), "dicing_camera", None)
     blocks = tuple(None if block is None else block.as_pointer() for block in (world, layer.material_override, dicing))
-    return *map(_values, (scene.render, scene.lancer, layer)), of_cycles, blocks, tuple(_collections(layer.layer_collection))
+    names = tuple(group.name for group in layer.lightgroups), tuple((aov.name, aov.type) for aov in layer.aovs)
+    simple = map(_values, (scene.render, scene.lancer, layer))
+    return *simple, of_cycles, blocks, names, tuple(_collections(layer.layer_collection))
 
 
 def _values(owner, types=_SIMPLE):

@@ -4,6 +4,7 @@ import bpy
 
 from ..bindings import snapshot
 from ..bindings.enums import DEEPEST_RECURSION, Accelerator, Features, Integrator, Pass, PixelFilter
+from ..bindings.numbered_pass import NumberedPass, extras
 
 # Number of threads, from the add-on's preferences, if the scene does not fix one; 0 = all.
 default_threads = 0
@@ -25,7 +26,10 @@ def threads_of(scene):
 
 
 def export_settings(depsgraph, passes, world, messages):
-    """Return the snapshot.Settings of a depsgraph. passes: of enums.Pass; world: the layer's evaluated world, or None."""
+    """Return the snapshot.Settings of a depsgraph. world: the layer's evaluated world, or None.
+
+    passes: of enums.Pass, and NumberedPasses.
+    """
     scene = depsgraph.scene
     own = scene.lancer
     render = scene.render
@@ -62,7 +66,8 @@ def export_settings(depsgraph, passes, world, messages):
         environment_reflections=own.environment_reflections,
         blended_features=bpy.app.version >= (5, 2),
         features=Features[own.features],
-        passes=tuple(sorted({Pass.COMBINED, *passes})),
+        passes=tuple(sorted({Pass.COMBINED, *(item for item in passes if not isinstance(item, NumberedPass))})),
+        **extras(passes),
         threads=threads_of(scene),
         accelerator=Accelerator[own.accelerator],
         occlusion_distance=occlusion_distance(world),

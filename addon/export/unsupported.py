@@ -2,9 +2,11 @@
 
 import bpy
 
-from ..bindings.enums import Pass
+from ..bindings.enums import Pass, PassKind
+from ..bindings.numbered_pass import NumberedPass
 from ..messages.severity import Severity
 from .cycles_settings import check_cycles
+from .light_groups import MOST
 from .visibility import object_hidden_from, sees_light_apart
 
 # Passes that engine/passes.py renders, by the names of a view layer's switches.
@@ -13,10 +15,10 @@ _PASSES_HERE = {f"{component}_{part}" for component in _COMPONENTS for part in (
     "combined", "z", "mist", "position", "normal", "uv", "object_index", "material_index", "emit", "environment",
     "ambient_occlusion",
 }  # fmt: skip
+_PASSES_HERE |= {f"cryptomatte_{kind}" for kind in ("object", "material", "asset")}
 # A switch without an image of its own, and a pass that Blender itself draws.
 _NO_PASSES = {"cryptomatte_accurate", "grease_pencil"}
-# Passes that measure Cycles' own work, and switches of its passes for denoising, which are on by default.
-_OF_CYCLES_WORK = ("pass_debug_sample_count", "pass_render_time")
+# Switches of Cycles' passes for denoising, which are on by default.
 _GUIDES_SHAPED_BY = ("denoising_pass_follow_reflections", "denoising_pass_use_albedo_roughness_weighting")
 # Passes that stay black with an integrator in every scene.
 _LIT = {Pass[f"{component}_{part}".upper()] for component in _COMPONENTS for part in ("direct", "indirect")}
@@ -40,11 +42,14 @@ def check_scene(scene, messages, in_view=False):
 
 
 def check_passes(scene, passes, messages):
-    """Add a message for the requested passes (of enums.Pass) that the integrator leaves empty."""
-    empty = sorted(EMPTY_PASSES[scene.lancer.integrator].intersection(passes))
-    if empty:
-        title = scene.lancer.bl_rna.properties["integrator"].enum_items[scene.lancer.integrator].name
-        names = ", ".join(item.name.replace("_", " ").capitalize() for item in empty)
+    """Add a message for the requested passes (of enums.Pass, or NumberedPasses) that the integrator leaves empty."""
+    integrator = scene.lancer.integrator
+    names = [item.name.replace("_", " ").capitalize() for item in sorted(EMPTY_PASSES[integrator].intersection(passes))]
+    if integrator != "PATH" and NumberedPass(PassKind.LIGHT_GROUP) in passes:
+        names.append("Light groups")
+    if names:
+        title = scene.lancer.bl_rna.properties["integrator"].enum_items[integrator].name
+        names = ", ".join(names)
         messages.add(f"scene '{scene.name}': these passes stay empty with {title}, Path Tracing fills them: {names}")
 
 
@@ -52,6 +57,8 @@ def check_view_layer(scene, view_layer, messages):
     who = f"view layer '{view_layer.name}'"
     if scene.render.use_freestyle and view_layer.use_freestyle:
         messages.add(f"{who}: Freestyle is not supported by Lancer, Blender draws its lines with EEVEE over the picture")
+    if len(view_layer.lightgroups) > MOST:
+        messages.add(f"{who}: has {len(view_layer.lightgroups)} light groups, the first {MOST} are rendered")
     names = _missing_passes(view_layer)
     if names:
         messages.add(f"{who}: these passes are not supported: {', '.join(names)}", severity=Severity.LEFT_OUT)
@@ -81,12 +88,7 @@ def _missing_passes(view_layer):
                 continue
             if getattr(owner, field.identifier) and field.name not in names:
                 names.append(field.name)
-    cycles = getattr(view_layer, "cycles", None)
-    names += [cycles.bl_rna.properties[name].name for name in _OF_CYCLES_WORK if getattr(cycles, name, False)]
-    if bpy.app.version >= (5, 2) and getattr(cycles, "denoising_store_passes", False):
-        names += ["Denoising Specular Albedo", "Denoising Roughness"]
-    names += [f"AOV '{aov.name}'" for aov in view_layer.aovs]
-    return names + [f"light group '{group.name}'" for group in view_layer.lightgroups]
+    return names
 
 
 def check_object(thing, scene, messages):

@@ -40,6 +40,18 @@ class Origin:
     types: tuple
 
 
+def sites(tree, kind):
+    """Yield the Sites of all nodes of a type in a tree and in its groups."""
+    open_ = [(tree, ())]
+    while open_:
+        inside, path = open_.pop()
+        for node in inside.nodes:
+            if node.type == kind:
+                yield Site(node, path)
+            elif node.type in GROUPS and not node.mute and node.node_tree is not None:
+                open_.append((node.node_tree, (*path, node)))
+
+
 class Walker:
     """Caches the links of each tree, which Blender would search for every socket."""
 

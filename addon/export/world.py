@@ -7,9 +7,10 @@ import numpy as np
 
 from ..bindings import snapshot
 from ..bindings.enums import AlphaMode, Coordinate, Environment, Extension, NodeKind, PathFact
-from ..bindings.parameters import only_read
+from ..bindings.parameters import kept, reached
 from ..messages.severity import Severity
 from .graph import NodeGraph
+from .outputs import read_outputs
 from .shader_cache import Sources
 from .sockets import output_node
 from .surface import emission_of
@@ -26,8 +27,8 @@ class Sky(NamedTuple):
     sources: Sources = Sources()
 
 
-def export_world(world, images, depsgraph, messages):
-    """Return the Sky of a world, black if it is None. images: the Images that all materials share."""
+def export_world(world, images, depsgraph, messages, aovs=()):
+    """Return the Sky of a world, black if it is None. images: the Images that all materials share; aovs: the Aovs to fill."""
     if world is None:
         return Sky(snapshot.World())
     who = f"world '{world.name}'"
@@ -40,8 +41,14 @@ def export_world(world, images, depsgraph, messages):
             f"{who}: its own limit of {cycles.max_bounces} bounces is not supported, the scene's Max Bounces is used",
             "feature:bounce limit of a lamp",
         )
-    radiance = _cube(own, graph, who, messages) if own.use_cube else _nodes(world, graph, who, messages)
-    nodes, radiance = only_read(graph.nodes, radiance)
+    if own.use_cube:
+        radiance, outputs = _cube(own, graph, who, messages), ()
+    else:
+        radiance, outputs = _nodes(world, graph, who, messages, aovs)
+    # Nodes of which nothing is left cost nothing.
+    nodes, renumbered = kept(graph.nodes, reached(graph.nodes, [radiance, *(output.value for output in outputs)]))
+    radiance = renumbered(radiance)
+    outputs = tuple(output.replaced(value=renumbered(output.value)) for output in outputs)
     method = getattr(cycles, "sampling_method", "")
     if method == "NONE" and isinstance(radiance, snapshot.NodeRef):
         messages.add(
@@ -70,23 +77,25 @@ def export_world(world, images, depsgraph, messages):
         radiance=radiance,
         ambient=messages.color(own.ambient_color, who, "ambient colour") if own.use_ambient_color else None,
         nodes=nodes,
+        outputs=outputs,
         hidden_from=hidden,
         map_resolution=cycles.sample_map_resolution if method == "MANUAL" else 0,
     )
     return Sky(sky, graph.sources)
 
 
-def _nodes(world, graph, who, messages):
+def _nodes(world, graph, who, messages, aovs):
+    """Return the radiance and the Outputs."""
     if bpy.app.version < (5, 0) and not world.use_nodes:
-        return messages.color(world.color, who, "colour")
+        return messages.color(world.color, who, "colour"), ()
     tree = graph.tree_of(world)
     output = output_node(tree, "OUTPUT_WORLD") if tree is not None else None
     if output is None:
-        return 0.0, 0.0, 0.0
+        return (0.0, 0.0, 0.0), ()
     if output.inputs["Volume"].is_linked:
         text = f"{who}: volumes are not supported, its background alone is shown"
         messages.add(text, "feature:volume of the world", severity=Severity.LEFT_OUT)
-    return emission_of(graph, tree, "OUTPUT_WORLD")
+    return emission_of(graph, tree, "OUTPUT_WORLD"), read_outputs(graph, tree, aovs)
 
 
 def _cube(own, graph, who, messages):

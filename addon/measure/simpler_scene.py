@@ -11,6 +11,7 @@ import math
 import numpy as np
 
 from ..bindings.enums import InstanceKind, LightKind, Pass, Shading
+from ..bindings.numbered_pass import extras
 from ..bindings.shading import NodeRef, World
 from ..bindings.snapshot import Light, MeshData
 
@@ -166,6 +167,7 @@ def few_bounces(snapshot):
 
 
 def picture_alone(snapshot):
-    if not set(snapshot.settings.passes) - {Pass.COMBINED}:
+    settings, without = snapshot.settings, extras(())
+    if not set(settings.passes) - {Pass.COMBINED} and not any(getattr(settings, name) for name in without):
         return snapshot
-    return _replaced(snapshot, settings=_replaced(snapshot.settings, passes=(Pass.COMBINED,)))
+    return _replaced(snapshot, settings=_replaced(settings, passes=(Pass.COMBINED,), **without))

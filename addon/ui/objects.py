@@ -2,7 +2,7 @@
 
 import bpy
 
-from .panel import LancerPanel, setting
+from .panel import LancerPanel, light_group, setting
 
 _SURFACES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 _RAYS = ("camera", "diffuse", "glossy", "transmission", "shadow")
@@ -73,6 +73,19 @@ class LANCER_OBJECT_PT_subdivision(LancerObjectPanel, bpy.types.Panel):
             column.prop(owner, "dicing_rate")
 
 
+class LANCER_OBJECT_PT_light_group(LancerPanel, bpy.types.Panel):
+    bl_label = "Light Group"
+    bl_context = "object"
+    bl_parent_id = "OBJECT_PT_visibility"
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and context.object is not None and context.object.type in {*_SURFACES, "LIGHT"}
+
+    def draw(self, context):
+        light_group(self._column(), context.object, context.view_layer)
+
+
 class LANCER_OBJECT_PT_ray_visibility(LancerPanel, bpy.types.Panel):
     bl_label = "Ray Visibility"
     bl_context = "object"
@@ -100,4 +113,5 @@ CLASSES = (
     LANCER_OBJECT_PT_shadow_terminator,
     LANCER_OBJECT_PT_subdivision,
     LANCER_OBJECT_PT_ray_visibility,
+    LANCER_OBJECT_PT_light_group,
 )

@@ -39,6 +39,15 @@ def setting(column, name, *owners, **options):
     return False
 
 
+def light_group(column, owner, layer):
+    """Draw the light group of an object or a world: a name, which may also be one that the view layer does not have yet."""
+    row = column.row(align=True)
+    row.prop_search(owner, "lightgroup", layer, "lightgroups", text="Light Group", results_are_suggestions=True)
+    button = row.row(align=True)
+    button.enabled = bool(owner.lightgroup) and owner.lightgroup not in layer.lightgroups
+    button.operator("scene.view_layer_add_lightgroup", icon="ADD", text="").name = owner.lightgroup
+
+
 def nodes_of(column, tree, kind):
     """Draw the node linked to an input of Cycles' output node; an error if there is no output node."""
     output = None if tree is None else tree.get_output_node("CYCLES")

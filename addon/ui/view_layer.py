@@ -7,7 +7,9 @@ from ..export.unsupported import EMPTY_PASSES
 from .panel import LancerPanel, setting
 
 _DATA = ("z", "mist", "position", "normal", "uv")
+_CRYPTOMATTES = ("object", "material", "asset")
 _INDEXES = ("object_index", "material_index")
+_WORK = (("pass_debug_sample_count", "Sample Count"), ("pass_render_time", "Render Time"))
 _COMPONENTS = ("diffuse", "glossy", "transmission")
 
 
@@ -36,6 +38,8 @@ class LANCER_VIEWLAYER_PT_passes_data(LancerViewLayerPanel, bpy.types.Panel):
         column.prop(own, "use_pass_albedo")
         column = whole.column(heading="Accuracy", align=True)
         column.prop(own, "use_pass_error")
+        for name, text in _WORK:
+            setting(column, name, getattr(layer, "cycles", None), text=text)
         column = whole.column(heading="Indexes", align=True)
         for name in _INDEXES:
             column.prop(layer, "use_pass_" + name)
@@ -65,6 +69,55 @@ class LANCER_VIEWLAYER_PT_passes_light(LancerViewLayerPanel, bpy.types.Panel):
         switch("emit", Pass.EMISSION, "Emission")
         switch("environment", Pass.ENVIRONMENT, "Environment")
         switch("ambient_occlusion", Pass.AMBIENT_OCCLUSION, "Ambient Occlusion")
+
+
+class LANCER_VIEWLAYER_PT_passes_cryptomatte(LancerViewLayerPanel, bpy.types.Panel):
+    bl_label = "Cryptomatte"
+    bl_parent_id = "LANCER_VIEWLAYER_PT_passes"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        layer = context.view_layer
+        whole = self._column()
+        column = whole.column(heading="Include", align=True)
+        for name in _CRYPTOMATTES:
+            column.prop(layer, "use_pass_cryptomatte_" + name, text=name.capitalize())
+        column = whole.column()
+        column.active = any(getattr(layer, "use_pass_cryptomatte_" + name) for name in _CRYPTOMATTES)
+        column.prop(layer, "pass_cryptomatte_depth", text="Levels")
+
+
+class LANCER_VIEWLAYER_PT_passes_aov(LancerViewLayerPanel, bpy.types.Panel):
+    bl_label = "Shader AOV"
+    bl_parent_id = "LANCER_VIEWLAYER_PT_passes"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        layer = context.view_layer
+        row = self._column().row()
+        row.template_list("VIEWLAYER_UL_aov", "aovs", layer, "aovs", layer, "active_aov_index", rows=3)
+        buttons = row.column(align=True)
+        buttons.operator("scene.view_layer_add_aov", icon="ADD", text="")
+        buttons.operator("scene.view_layer_remove_aov", icon="REMOVE", text="")
+        if layer.active_aov is not None and not layer.active_aov.is_valid:
+            self.layout.label(text="Another pass has this name", icon="ERROR")
+
+
+class LANCER_VIEWLAYER_PT_passes_lightgroups(LancerViewLayerPanel, bpy.types.Panel):
+    bl_label = "Light Groups"
+    bl_parent_id = "LANCER_VIEWLAYER_PT_passes"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        layer = context.view_layer
+        row = self._column().row()
+        row.template_list("UI_UL_list", "lightgroups", layer, "lightgroups", layer, "active_lightgroup_index", rows=3)
+        column = row.column()
+        buttons = column.column(align=True)
+        buttons.operator("scene.view_layer_add_lightgroup", icon="ADD", text="")
+        buttons.operator("scene.view_layer_remove_lightgroup", icon="REMOVE", text="")
+        column.separator()
+        column.menu("VIEWLAYER_MT_lightgroup_sync", icon="DOWNARROW_HLT", text="")
 
 
 class LANCER_VIEWLAYER_PT_filter(LancerViewLayerPanel, bpy.types.Panel):
@@ -98,6 +151,9 @@ CLASSES = (
     LANCER_VIEWLAYER_PT_passes,
     LANCER_VIEWLAYER_PT_passes_data,
     LANCER_VIEWLAYER_PT_passes_light,
+    LANCER_VIEWLAYER_PT_passes_cryptomatte,
+    LANCER_VIEWLAYER_PT_passes_aov,
+    LANCER_VIEWLAYER_PT_passes_lightgroups,
     LANCER_VIEWLAYER_PT_filter,
     LANCER_VIEWLAYER_PT_override,
 )

@@ -3,7 +3,7 @@
 import bpy
 
 from ..export.world import CUBE_SIDES
-from .panel import LancerPanel, nodes_of, setting, uses_classic
+from .panel import LancerPanel, light_group, nodes_of, setting, uses_classic
 
 
 class LancerWorldPanel(LancerPanel):
@@ -81,13 +81,13 @@ class LANCER_WORLD_PT_settings(LancerWorldPanel, bpy.types.Panel):
     bl_label = "Settings"
     bl_options = {"DEFAULT_CLOSED"}
 
-    @classmethod
-    def poll(cls, context):
-        return super().poll(context) and hasattr(context.world, "cycles")
-
     def draw(self, context):
-        cycles = context.world.cycles
         column = self._column()
+        light_group(column, context.world, context.view_layer)
+        # The switches belong to Cycles, an add-on that may be disabled.
+        cycles = getattr(context.world, "cycles", None)
+        if cycles is None:
+            return
         setting(column, "sampling_method", cycles, text="Sampling")
         row = column.row()
         row.active = cycles.sampling_method == "MANUAL"

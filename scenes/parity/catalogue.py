@@ -51,6 +51,7 @@ SUBJECTS = (
     "films",
     "passes_light",
     "passes_data",
+    "passes_chosen",
     "real_models",
 )
 

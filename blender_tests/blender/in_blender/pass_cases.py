@@ -84,6 +84,48 @@ def every_pass():
     }
 
 
+def chosen_passes():
+    """Return light groups, AOVs, sample counts and times of the gallery, with the names of the file."""
+    scene = _gallery()
+    layer = scene.view_layers[0]
+    bpy.ops.scene.view_layer_add_lightgroup(name="lamps")
+    bpy.ops.scene.view_layer_add_lightgroup(name="rest")
+    scene.world.lightgroup = "rest"
+    for thing in scene.objects:
+        thing.lightgroup = "lamps" if thing.type == "LIGHT" else "rest"
+    for name, kind in (("Tint", "COLOR"), ("Number", "VALUE"), ("Combined", "VALUE")):
+        aov = layer.aovs.add()
+        aov.name, aov.type = name, kind
+    floor = bpy.data.objects["Plane"].data.materials[0]
+    inner = bpy.data.node_groups.new("Inside", "ShaderNodeTree")
+    for tree, name, socket, value in (
+        (floor.node_tree, "Tint", "Color", (0.25, -1.0, 2.0, 1.0)),
+        # As in Cycles, also nodes inside groups write.
+        (inner, "Number", "Value", 0.75),
+        (floor.node_tree, "Nowhere", "Value", 5.0),
+    ):
+        node = tree.nodes.new("ShaderNodeOutputAOV")
+        setattr(node, "aov_name" if hasattr(node, "aov_name") else "name", name)
+        node.inputs[socket].default_value = value
+    floor.node_tree.nodes.new("ShaderNodeGroup").node_tree = inner
+    layer.cycles.pass_debug_sample_count = True
+    if hasattr(layer.cycles, "pass_render_time"):
+        layer.cycles.pass_render_time = True
+    pictures, messages = _read(scene)
+    combined = pictures["Combined"][..., :3].astype(np.float64)
+    groups = [pictures[f"Combined_{name}"].astype(np.float64) for name in ("lamps", "rest")]
+    return {
+        "passes": {name: picture.shape[2] for name, picture in pictures.items()},
+        "difference": float(np.abs(sum(groups) - combined).max() / combined.max()),
+        "means": [float(group.mean()) for group in groups],
+        "tints": np.unique(pictures["Tint"].reshape(-1, 4), axis=0)[[0, -1]].tolist(),
+        "numbers": [float(pictures["Number"].min()), float(pictures["Number"].max())],
+        "samples": np.unique(pictures["Debug Sample Count"]).tolist(),
+        "time": float(pictures["Render Time"].min()) if "Render Time" in pictures else None,
+        "messages": [line for line in messages if "pass" in line or "group" in line],
+    }
+
+
 def no_pass():
     scene = _gallery()
     _ask(scene.view_layers[0], "z", on=False)

@@ -32,11 +32,14 @@ PASSES = {
     "Denoising Albedo": ("denoising_store_passes", "Denoising Albedo"),
     "Denoising Normal": ("denoising_store_passes", "Denoising Normal"),
     "Denoising Depth": ("denoising_store_passes", "Denoising Depth"),
+    "Denoising Specular Albedo": ("denoising_store_passes", "Denoising Specular Albedo"),
+    "Denoising Roughness": ("denoising_store_passes", "Denoising Roughness"),
 }
 
 
 def pass_name(name):
-    return name if bpy.app.version >= (5, 0) else PASSES[name][1]
+    """Return a pass's name in this Blender. Passes that a scene's builder makes are not in the table."""
+    return name if bpy.app.version >= (5, 0) or name not in PASSES else PASSES[name][1]
 
 
 def unbias(scene, case, samples, seed):
@@ -51,7 +54,7 @@ def unbias(scene, case, samples, seed):
     layer.samples = 0
     # One pass fewer: Blender 5.0 cannot write two of them if pixels are not square.
     layer.use_pass_combined = "Combined" in case.passes
-    for name in case.passes:
+    for name in PASSES.keys() & set(case.passes):
         _ask_for(layer, scene, PASSES[name][0])
 
 
