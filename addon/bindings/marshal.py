@@ -17,7 +17,8 @@ INSTANCE = np.dtype(abi.Instance)
 
 
 def _address(array):
-    return None if array is None else array.ctypes.data
+    # Faster than array.ctypes, which makes an object for each call.
+    return None if array is None else array.__array_interface__["data"][0]
 
 
 def _row_major(matrix):

@@ -11,9 +11,13 @@ from .blocks import Blocks
 def array(value, dtype, shape, what):
     """Return value as a read-only C-contiguous array; raise ValueError for another shape. None in shape is any length."""
     array = np.ascontiguousarray(value, dtype).view()
-    if array.ndim != len(shape) or any(want is not None and want != got for want, got in zip(shape, array.shape, strict=True)):
+    got = array.shape
+    # A scene may have a hundred thousand arrays.
+    if got != shape and (
+        len(got) != len(shape) or any(want not in (None, size) for want, size in zip(shape, got, strict=True))
+    ):
         raise ValueError(f"{what} has shape {array.shape}, expected {shape}")
-    array.flags.writeable = False
+    array.setflags(write=False)
     return array
 
 

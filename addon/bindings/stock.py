@@ -42,11 +42,11 @@ class Stock:
         keeps: whether the Part keeps the record, by which it is known again.
         threads: for the tree of a new mesh, which the library begins at once, 0 = all; None leaves the tree to the commit.
         """
-        found = self._find(kind, record, images)
+        key = key_of(kind, record)
+        found = self._find(record, key, images)
         if found is not None:
             return found, False
         used = {n: images[n] for n in _numbers(record) if n < len(images)}
-        key = key_of(kind, record)
         part = Part(library, _make(library, kind, record, number, images), key, record if keeps else None, used)
         if threads is not None:
             check(library.lancer_object_prepare(part.handle, threads), library)
@@ -62,11 +62,10 @@ class Stock:
         records = (part.record for part in _living(self._by_key, key_of(kind, record)))
         return next((other for other in records if other is not None and other == record), record)
 
-    def _find(self, kind, record, images):
+    def _find(self, record, key, images):
         for part in _living(self._by_identity, id(record)):
             if part.record is record and part.reads(images):
                 return part
-        key = key_of(kind, record)
         if key is not None:
             for part in _living(self._by_key, key):
                 if part.record == record:
@@ -90,7 +89,10 @@ def _add(known, key, part):
 
 
 def _living(known, key):
-    parts = [part for part in (reference() for reference in known.get(key, ())) if part is not None]
+    references = known.get(key)
+    if references is None:
+        return ()
+    parts = [part for part in (reference() for reference in references) if part is not None]
     if not parts:
         known.pop(key, None)
     return parts

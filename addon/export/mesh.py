@@ -14,7 +14,7 @@ from .attributes import POLYGONS, color_attribute, read_attributes, read_uv_map,
 from .edges import at_vertices
 from .shading_normals import shading_normals
 
-_SAMPLE = 8
+_SAMPLE = 2
 
 
 @contextlib.contextmanager
@@ -128,7 +128,7 @@ def _triangle_corners(mesh, count):
     width = 4 if bpy.app.version < (4, 1) else 3
     if count > 1 and last - first == 4 * width * (count - 1):
         view = np.ctypeslib.as_array((ctypes.c_int32 * (width * count)).from_address(first)).reshape(count, width)[:, :3]
-        if all(view[i].tolist() == list(triangles[i].loops) for i in range(0, count, max(1, count // _SAMPLE))):
+        if all(view[i].tolist() == list(triangles[i].loops) for i in range(0, count, max(1, (count - 1) // _SAMPLE))):
             return view
     return read(triangles, "loops", np.int32, 3)
 

@@ -15,11 +15,15 @@ _EDGES = (Coordinate.EDGE_U, Coordinate.EDGE_V)
 _KEEPS_CORNERS = bpy.app.version >= (5, 2)
 
 
+def show_differences(materials):
+    """Whether differences() depends on the mesh; without it, there are none."""
+    return _are_displaced(materials) or _keep_normals(materials) or bool(_uv_maps_of_tangents(materials))
+
+
 def differences(mesh, materials):
     """Return [(text, key)], for Messages.add, of an exported mesh and the materials of its slots."""
     found = []
-    nodes = (node for material in materials for node in material.nodes if node.kind == NodeKind.TANGENT)
-    for name in sorted({node.name for node in nodes if node.option == ALONG_U}):
+    for name in _uv_maps_of_tangents(materials):
         if lacks_tangents(mesh, name):
             uv_map = name_in_blender(name)
             text = f"it has no UV map '{uv_map}' for tangents: anisotropic surfaces are even, Cycles shows them black"
@@ -28,8 +32,7 @@ def differences(mesh, materials):
         text = "displacement renews its normals otherwise than in Cycles at creases, custom normals and beside flat faces"
         remedy = "they agree where all faces are smooth and without custom normals"
         found.append((f"{text}; {remedy}", "feature:creases under displacement"))
-    keeps = any(material.flags & int(MaterialFlag.KEEP_NORMALS) for material in materials)
-    if keeps and mesh.normals is None and _SMOOTHS_FLAT_FACES:
+    if _keep_normals(materials) and mesh.normals is None and _SMOOTHS_FLAT_FACES:
         text = "flat faces with Displacement and Bump stay flat, Cycles of this version smooths them"
         found.append((f"{text}; they agree where the faces are smooth", "feature:smooth bump of flat faces"))
     return found
@@ -44,6 +47,15 @@ def lost_by_exact_shape(wanted, materials):
     if any(node.kind == NodeKind.COORDINATE and node.option in _EDGES for node in nodes):
         lost.append("edges for the direction of hair")
     return [*lost, *(_OUTPUTS.get(name, f"attribute '{name}'") for name in named_attributes(wanted))]
+
+
+def _uv_maps_of_tangents(materials):
+    nodes = (node for material in materials for node in material.nodes if node.kind == NodeKind.TANGENT)
+    return sorted({node.name for node in nodes if node.option == ALONG_U})
+
+
+def _keep_normals(materials):
+    return any(material.flags & int(MaterialFlag.KEEP_NORMALS) for material in materials)
 
 
 def _are_displaced(materials):

@@ -10,7 +10,7 @@ from ..messages.severity import Severity
 from .attributes import POLYGONS
 from .light_groups import group_numbers
 from .mesh import export_mesh, read_positions, shown_mesh
-from .mesh_differences import differences, lost_by_exact_shape
+from .mesh_differences import differences, lost_by_exact_shape, show_differences
 from .subdivision.divider import PLACES_OTHERWISE, size_in_words
 from .subdivision.modifier import may_make_instances
 from .unsupported import check_object
@@ -67,6 +67,7 @@ class Objects:
         self._numbers = {}
         self._meshes = {}
         self._differences = {}  # messages by slots and mesh
+        self._may_differ = {}  # whether there may be some, by slots
         self._placed = {}
         self._wanted = {}
         self._checked = set()
@@ -228,7 +229,11 @@ class Objects:
         found = self._differences.get((slots, mesh))
         if found is None:
             materials = [self.materials.list[slot] for slot in slots]
-            found = self._differences[slots, mesh] = differences(self.meshes[mesh], materials)
+            may_differ = self._may_differ.get(slots)
+            if may_differ is None:
+                may_differ = self._may_differ[slots] = show_differences(materials)
+            found = differences(self.meshes[mesh], materials) if may_differ else ()
+            self._differences[slots, mesh] = found
         for text, key in found:
             self.messages.add(f"object '{name}': {text}", key, severity=Severity.HINT)
 

@@ -1,5 +1,6 @@
 """Export of one depsgraph to one snapshot."""
 
+import time
 from dataclasses import dataclass
 
 from ..bindings.enums import Pass
@@ -23,6 +24,9 @@ from .texture_cache import texture_cache
 from .unsupported import check_passes, check_scene, check_view_layer
 from .world import export_world
 
+# Seconds between polls: to ask Blender takes as long as a tenth of a small mesh, which asks ten times.
+_POLL_EVERY = 0.005
+
 
 @dataclass(frozen=True)
 class ExportOptions:
@@ -44,15 +48,20 @@ class ExportOptions:
 
 
 def export_scene(depsgraph, options=None, poll=None):
-    """Return (SceneSnapshot, Messages). poll is called every few objects; raise Cancelled if it returns True.
+    """Return (SceneSnapshot, Messages). poll is called every few milliseconds; raise Cancelled if it returns True.
 
     Raise LancerError if there is no camera or no image to render.
     """
     options = options or ExportOptions()
+    polled = -_POLL_EVERY
 
     def obey():
-        if poll is not None and poll():
+        nonlocal polled
+        if poll is None or time.monotonic() - polled < _POLL_EVERY:
+            return
+        if poll():
             raise Cancelled
+        polled = time.monotonic()
 
     obey()
     messages = Messages()
