@@ -37,6 +37,7 @@ def register():
         bug_report,
         check_scene,
         course_groups,
+        delete_resume_files,
         measure_features,
         measure_quality,
         measuring,
@@ -47,6 +48,7 @@ def register():
 
     modules = (own_library, properties, preferences, main_thread, results, kept_pictures, render_engine, measuring)
     modules += (measure_features, measure_quality, check_scene, course_groups, take_over_cycles, presets)
+    modules += (delete_resume_files,)
     # render_job unregisters first: it ends a running render while the rest of the add-on is still registered.
     modules += (ui, bug_report, manual, viewport, preview, render_job)
     add_all(modules, lambda module: module.register(), lambda module: module.unregister())

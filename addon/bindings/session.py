@@ -133,10 +133,15 @@ class Session(Handle, SessionParts, SessionProbes):
         return session
 
     @classmethod
-    def upload(cls, snapshot, library=None, poll=None, release=False, before=None, stock=None, filled=None):
-        """Create the scene and the session of a snapshot; close() frees both. release, filled: see Scene.upload."""
+    def upload(cls, snapshot, library=None, poll=None, release=False, before=None, stock=None, filled=None, digest=None):
+        """Create the scene and the session of a snapshot; close() frees both. release, filled: see Scene.upload.
+
+        digest: names the scene in parts of pictures.
+        """
         scene = Scene.upload(snapshot, library, poll, release, before, stock, filled)
         try:
+            if digest is not None:
+                scene.set_digest(digest)
             session = cls(scene, snapshot.camera, snapshot.settings)
         except BaseException:
             scene.close()

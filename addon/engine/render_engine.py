@@ -21,13 +21,14 @@ from ..measure.schedule import Schedule, TimeShare
 from ..messages.messages import Messages
 from ..messages.severity import Severity
 from ..viewport.viewport import Viewport
-from . import first_look, kept_pictures, many_machines, passes, preview, render_export, render_job
+from . import first_look, kept_pictures, many_machines, passes, preview, render_export, render_job, resume
 from .account import account
 from .denoising import Denoising, wishes
 from .later import Later
 from .picture import Picture
 from .progress_text import progress_text
 from .results import last_messages, last_missing, last_statistics
+from .stepped_session import SteppedSession
 
 # Seconds between polls.
 _STEP = 0.05
@@ -63,6 +64,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
     _ahead = None  # the shared_scenes.Ahead of the export
     _following = None  # the kept_pictures.Following
     _later = None  # the Later of the snapshot
+    _resume = None  # the Resume of the view layer
     _viewport = None
 
     def update_render_passes(self, scene=None, renderlayer=None):
@@ -97,7 +99,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
                     self.free_blender_memory()
                 self._guarded(scene, self._render, scene, layer, wanted, denoising, machines)
             self._snapshot = self._ahead = None
-            self._later = None
+            self._later = self._resume = None
             if self._is_over():
                 # The remaining layers are not rendered.
                 self._picture = None
@@ -183,6 +185,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         if denoise.wanted(scene, view_layer) and denoise.missing():
             # Report it before the render takes its time.
             self._tell(scene, Messages([denoise.missing()]))
+        self._resume = resume.wanted(scene, view_layer.name)
         wanted = tuple(passes.render_passes(scene, view_layer))
         self._ahead = shared_scenes.Ahead(threads_of(scene))
         begin = self._ahead.mesh if many_machines.wanted(scene) is None and scene.lancer.accelerator == "BVH" else None
@@ -218,16 +221,19 @@ class LancerRenderEngine(bpy.types.RenderEngine):
     def _uploaded(self, scene, layer):
         """Return a Session that owns its scene, unless the scene is kept for the next frame."""
         kept, snapshot = kept_pictures.of(scene), self._snapshot
+        kind, digest = (Session, None) if self._resume is None else (SteppedSession, resume.digest_of(snapshot))
         before = (kept and kept.scenes.get(layer)) or shared_scenes.nearest(snapshot)
         given = {"poll": self._is_over, "before": before, "stock": shared_scenes.stock}
         if kept is None:
-            session = Session.upload(snapshot, release=True, filled=self._ahead.end, **given)
+            session = kind.upload(snapshot, release=True, filled=self._ahead.end, digest=digest, **given)
             shared_scenes.remember(session.scene)
             return session
         uploaded = Scene.upload(snapshot, **given)
         kept.keep_scene(layer, uploaded)
         shared_scenes.remember(uploaded)
-        return Session(uploaded, snapshot.camera, snapshot.settings)
+        if digest is not None:
+            uploaded.set_digest(digest)
+        return kind(uploaded, snapshot.camera, snapshot.settings)
 
     def _render(self, scene, layer, wanted, denoising, machines):
         with self._opened(scene, layer, machines) as session:
@@ -241,8 +247,11 @@ class LancerRenderEngine(bpy.types.RenderEngine):
                 self.end_result(result, cancel=True)
                 raise LancerError(f"Blender expects {result.resolution_x} x {result.resolution_y} pixels, not {expected}")
 
+            if self._resume is not None:
+                self._tell(scene, self._resume.load(session))
             kept = kept_pictures.of(scene)
-            is_brief = self.is_animation or kept is not None and kept.sample_seconds < _SHORT
+            has_samples = self._resume is not None and self._resume.is_continued
+            is_brief = self.is_animation or has_samples or kept is not None and kept.sample_seconds < _SHORT
             look = None if is_brief else first_look.FirstLook(session, self._is_over)
             if look and look.coarse is not None:
                 passes.fill(result.layers[0], lambda _: look.coarse, passes.COMBINED)
@@ -258,8 +267,12 @@ class LancerRenderEngine(bpy.types.RenderEngine):
 
             denoiser = denoising and Denoising(session, denoising, self._is_over, lambda text: self.update_stats("", text))
             schedule = Schedule(session, self._picture.started, denoiser.bound if denoiser and denoising.of_target else None)
+            if self._resume is not None:
+                self._resume.follow(schedule)
             try:
                 self._run(schedule, show, is_brief or look.coarse is not None)
+                if self._resume is not None:
+                    self._tell(scene, self._resume.finish())
                 fill()
                 denoised = None
                 if denoiser and not self._is_over():

@@ -47,6 +47,9 @@ class Schedule:
         self._started = time.monotonic() if started is None else started
         self._looks = 0
         self._refining = False
+        self._before = (0, False)  # these two before the last range was judged
+        self._next = 0  # samples of the running range for all pixels; 0: only some pixels get more
+        self._rest = None  # ranges of an earlier render's range that are left
         self._stopping = False
         self._range = (0.0, 0)  # start time of the range, pixel samples before it
         self._seconds_per_sample = 0.0
@@ -61,14 +64,18 @@ class Schedule:
         """Start the next range; return False if the render is over."""
         if self.over:
             return False
-        self._refining = self._refining and self._refine()
-        self._next = 0
-        if not self._refining:
-            self._next = self._count()
-            if self._next == 0:
-                self.reason = SAMPLES
-                return False
-            self.session.render(self.samples, self._next)
+        if self._rest is not None:
+            rest, self._rest = self._rest, None
+            self.session.render_in_steps(rest)
+        else:
+            self._next = 0
+            self._refining = self._refining and self._refine()
+            if not self._refining:
+                self._next = self._count()
+                if self._next == 0:
+                    self.reason = SAMPLES
+                    return False
+                self.session.render(self.samples, self._next)
         self._range = (time.monotonic(), self._progress.samples if self._progress else 0)
         return True
 
@@ -86,6 +93,22 @@ class Schedule:
     def cancel(self):
         self.session.cancel()
 
+    def state(self, is_running):
+        """Return what continue_from() needs as numbers by name. is_running: whether ranges of the running range are left."""
+        # With other limits the last range has to be judged once more.
+        again = self._judged and not is_running
+        looks, refining = self._before if again else (self._looks, self._refining)
+        return {"samples": self.samples, "next": self._next, "looks": looks, "refining": refining}
+
+    def continue_from(self, state, rest):
+        """Continue a render with this state, whose samples the session has. rest: the ranges that are left of its range."""
+        self.samples, self._next = state["samples"], state["next"]
+        self._looks, self._refining = self._before = state["looks"], state["refining"]
+        if len(rest):
+            self._rest, self._judged = rest, True
+        else:
+            self.samples, self._next = self.samples + self._next, 0
+
     @property
     def over(self):
         """Whether no further range follows; reads the error if there is a target.
@@ -94,6 +117,7 @@ class Schedule:
         """
         if self.reason is None and not self._judged and (self._progress is None or self._progress.finished):
             self._judged = True
+            self._before = self._looks, self._refining
             self.reason = self._ended()
         return self.reason is not None
 
@@ -153,7 +177,8 @@ class Schedule:
             return SAMPLES
         target = self.settings.target_error
         if self.samples >= FIRST_LOOK:
-            self._refining = self.settings.refines and 2 * self.samples <= self.settings.samples or self._refining
+            may_double = _is_power(self.samples) and 2 * self.samples <= self.settings.samples
+            self._refining = self.settings.refines and may_double or self._refining
             if target > 0.0:
                 self.confidence = 1.0 - 2.0 * _MISTAKE / 2.0 ** (self._looks + 1)
                 self._looks += 1
@@ -188,6 +213,9 @@ class Schedule:
     def _count(self):
         """Return the samples of the next range for all pixels."""
         count = max(self.first, self.samples)
+        if self.settings.refines and not _is_power(self.samples):
+            # An earlier render has ended here.
+            count = (1 << self.samples.bit_length()) - self.samples
         if not self.settings.refines and self._seconds_per_sample > 0.0:
             # Multiples of an eighth of the largest power of two keep the film small.
             unit = max(1, (1 << self.samples.bit_length()) // 16)
@@ -199,8 +227,12 @@ class Schedule:
         self._seconds_per_sample = (time.monotonic() - self._range[0]) / max(1, self._next)
         if self._stopping:
             self.reason = TIME
-        elif not self._refining:
-            self.samples += self._next
+        elif not self._refining and not progress.cancelled:
+            self.samples, self._next = self.samples + self._next, 0
+
+
+def _is_power(samples):
+    return samples & (samples - 1) == 0
 
 
 class TimeShare:

@@ -93,6 +93,12 @@ class LancerSceneSettings(bpy.types.PropertyGroup):
         "Off: that of the picture before denoising",
         default=True,
     )
+    use_resume: BoolProperty(
+        name="Resume",
+        description="Keep the samples of F12 in a file beside the output, written now and then and at the end. The next render "
+        "of the same scene continues from it, after Esc, a crash, or with more samples, to the picture of one long render",
+        default=False,
+    )
     use_many_machines: BoolProperty(
         name="Many Machines",
         description="F12 renders on the workers of a scheduler instead of this machine, to the same picture",

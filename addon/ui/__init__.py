@@ -3,10 +3,26 @@
 import bpy
 
 from ..host.registering import add_all
-from . import adopted, camera, check, described, light, material, messages, motion, objects, render, uses, view_layer, world
+from . import (
+    adopted,
+    camera,
+    check,
+    described,
+    light,
+    material,
+    messages,
+    motion,
+    objects,
+    render,
+    resume,
+    uses,
+    view_layer,
+    world,
+)
 
 CLASSES = (
     *render.CLASSES,
+    *resume.CLASSES,
     *messages.CLASSES,
     *uses.CLASSES,
     *check.CLASSES,
