@@ -48,6 +48,7 @@ _MEMBERS = {
     abi.Parameter: _parameter,
     ctypes.c_double * 12: _row_major,
     ctypes.c_uint32: int,
+    ctypes.c_uint64: int,
     ctypes.c_float: _same,
     ctypes.c_double: _same,
     **{ctypes.c_float * n: _same for n in (2, 3, 9, 12)},
@@ -107,6 +108,9 @@ def instances(table):
     rows["hidden_from"] = table.hidden_from
     rows["terminator"] = table.terminators
     rows["flags"] = table.flags
+    if table.links is not None:
+        for name, values in zip(("receiver_set", "blocker_set", "unlit_sets", "clear_sets"), table.links.T, strict=True):
+            rows[name] = values
     # The pointer from data_as keeps the array alive; a plain address would not.
     pointer = rows.ctypes.data_as(ctypes.c_void_p)
     return len(rows), pointer, len(table.slots), _address(table.slots), names, len(names)

@@ -15,6 +15,7 @@ import typing
 import numpy as np
 
 from .blocks import Blocks
+from .record import Sets
 
 _TYPES = {}
 _TREE = "tree"
@@ -117,6 +118,8 @@ def _fits(value, kind):
         return isinstance(value, tuple) and all(_fits(item, options[0]) for item in value)
     if options:
         return any(_fits(value, option) for option in options)
+    if kind is Sets:
+        return isinstance(value, int) and 0 <= value < 2**64
     if kind in (int, bool):
         return isinstance(value, int) and 0 <= value <= _LARGEST
     if kind is float:

@@ -53,6 +53,10 @@ def _arrays(value):
         yield from _arrays(tuple(vars(value).values()))
 
 
+class Sets(int):
+    """The type of fields that hold 64 bits; other whole numbers have 32."""
+
+
 class Record:
     """A dataclass with equality of arrays by value."""
 

@@ -24,7 +24,7 @@ from .enums import (
     Shading,
 )
 from .npz import SnapshotError, load_npz, register, save_npz
-from .record import Record, array
+from .record import Record, Sets, array
 from .shading import (  # noqa: F401 - all records have one address
     Image,
     Lobe,
@@ -127,6 +127,7 @@ class Instance:
     object_matte: int = 0  # ids of its mattes; 0 = none
     asset_matte: int = 0
     light_group: int = 0  # of its own light, 1 is the first; 0 = none
+    links: tuple = (0, 0, 0, 0)  # see InstanceTable
 
 
 @register
@@ -181,6 +182,7 @@ class InstanceTable(Record):
     asset_mattes: np.ndarray | None = None
     light_groups: np.ndarray | None = None
     infos: np.ndarray | None = None  # (n, 5): colour, alpha and random number for OBJECT_INFO; None: white and 0
+    links: np.ndarray | None = None  # (n, 4): receiver_set, blocker_set, unlit_sets, clear_sets; None: all 0
     attributes: tuple[ObjectAttribute, ...] = ()
     names: tuple[str, ...] = ()
     asset_names: tuple[str, ...] = ()  # of which asset_mattes has the ids
@@ -201,6 +203,8 @@ class InstanceTable(Record):
         for name in ("object_mattes", "asset_mattes", "light_groups"):
             if getattr(self, name) is not None:
                 self.set(name, array(getattr(self, name), np.uint32, (count,), name))
+        if self.links is not None:
+            self.set("links", array(self.links, np.uint64, (count, 4), "links"))
         for name in _INSTANCE_COLUMNS:
             self.set(name, array(getattr(self, name), np.uint32, (count,), name))
         self.set("slots", array(self.slots, np.uint32, (None,), "slots"))
@@ -246,6 +250,7 @@ class InstanceTable(Record):
             object_mattes=[i.object_matte for i in instances],
             asset_mattes=[i.asset_matte for i in instances],
             light_groups=[i.light_group for i in instances],
+            links=np.array([i.links for i in instances], np.uint64) if any(any(i.links) for i in instances) else None,
             names=tuple(names),
             slots=slots,
         )
@@ -276,6 +281,8 @@ class Light(Parameters, struct=structs.Light):
     hidden_from: int = Ray.CAMERA  # bits; by default lamps are invisible to the camera
     no_shadow: bool = False
     light_group: int = 0  # 1 is the first; 0 = none
+    unlit_sets: Sets = 0
+    clear_sets: Sets = 0
     strength: object
     nodes: tuple[Node, ...] = ()
 

@@ -64,6 +64,10 @@ class Instance(Structure):
         ("asset_matte", c_uint32),
         ("light_group", c_uint32),
         ("terminator", c_float),
+        ("receiver_set", c_uint32),
+        ("blocker_set", c_uint32),
+        ("unlit_sets", c_uint64),
+        ("clear_sets", c_uint64),
     ]
 
 
@@ -249,6 +253,8 @@ class Light(Structure):
         ("ambient_color", c_float * 3),
         ("diffuse_color", c_float * 3),
         ("specular_color", c_float * 3),
+        ("unlit_sets", c_uint64),
+        ("clear_sets", c_uint64),
     ]
 
 

@@ -59,6 +59,7 @@ CONTROLS = (
     Controls("Object", ("shadow_terminator_geometry_offset",), since=(4, 5)),
     Controls("CyclesObjectSettings", ("shadow_terminator_geometry_offset",), before=(4, 5)),
     Controls("CyclesObjectSettings", ("use_adaptive_subdivision", "dicing_rate"), before=(5, 0)),
+    Controls("ObjectLightLinking", ("receiver_collection", "blocker_collection"), since=(4, 0)),
     Controls("Camera", ("lens", "angle", "ortho_scale", "sensor_fit", "sensor_width", "sensor_height")),
     Controls("Camera", ("shift_x", "shift_y", "clip_start", "clip_end")),
     Controls("Camera", _PANORAMA, since=(4, 2)),

@@ -85,8 +85,12 @@ class Instances:
     There may be millions of entries: only numbers are stored for each, and all matrices are read in one call.
     """
 
-    def __init__(self, depsgraph, materials, messages, shaders, divider, options):
-        """shaders: the ShaderCache of lamps. divider: a subdivision.Divider. options: the ExportOptions."""
+    def __init__(self, depsgraph, materials, messages, shaders, divider, linking, options):
+        """shaders: the ShaderCache of lamps. divider: a subdivision.Divider. linking: the LightLinking.
+
+        options: the ExportOptions.
+        """
+        self._linking = linking
         self.depsgraph = depsgraph
         self.messages = messages
         self.lights = []
@@ -95,7 +99,7 @@ class Instances:
         self._shaders = shaders
         self._reader = AttributeReader(depsgraph, sees_all=False)
         self._divider = divider
-        self._objects = Objects(depsgraph, materials, messages, divider, options)
+        self._objects = Objects(depsgraph, materials, messages, divider, linking, options)
         self._rows = {}
         self._narrowed = {}
         self._checked_hair = set()
@@ -178,6 +182,9 @@ class Instances:
         )
         matrices = self.places.matrices(self.depsgraph)
         poll()
+        links = None
+        if any(any(look.links) for look in looks):
+            links = np.array([look.links for look in looks], np.uint64)[look_of]
         infos = None
         if any(self._objects.materials.tell_apart(look.slots) for look in looks):
             infos = read_infos(self.depsgraph.object_instances, entries, _POLL_EVERY, poll)
@@ -205,6 +212,7 @@ class Instances:
             names=self._names,
             slots=slots,
             infos=infos,
+            links=links,
         )
 
     def _attributes(self, look_of, entries, poll):
@@ -258,7 +266,12 @@ class Instances:
             light = export_light(thing, entry.matrix_world, self.messages, self.depsgraph, hidden, shine)
             if light is not None:
                 group = self._objects.groups.get(thing.lightgroup, 0)
-                self.lights.append(light.replaced(light_group=group) if group else light)
+                links = self._linking.links(thing.original.as_pointer())
+                if group:
+                    light = light.replaced(light_group=group)
+                if any(links):
+                    light = light.replaced(unlit_sets=links.unlit_sets, clear_sets=links.clear_sets)
+                self.lights.append(light)
         elif thing.type not in _SHOWN_AS_MESH and thing.type not in _SHOWS_NOTHING:
             text = f"object '{thing.name}': type {thing.type} is not supported, it is left out"
             self.messages.add(text, f"feature:{thing.type.lower()} object", severity=Severity.LEFT_OUT)

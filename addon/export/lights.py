@@ -16,7 +16,6 @@ from .images import NoPictures
 from .lamp_transforms import area_of, axes_of, cone_stretch, describe_shear, is_flattened, shines_all_around
 from .shader_cache import Sources
 from .surface import emission_of
-from .unsupported import check_linking
 from .visibility import object_hidden_from
 
 _KINDS = {"POINT": LightKind.POINT, "SPOT": LightKind.SPOT, "SUN": LightKind.SUN, "AREA": LightKind.AREA}
@@ -183,7 +182,6 @@ def _area(light, matrix, who, messages):
 
 
 def _check(thing, light, who, messages):
-    check_linking(thing, "light", messages)
     cycles = getattr(light, "cycles", None)
     if getattr(cycles, "max_bounces", 1024) < 1024:
         messages.add(

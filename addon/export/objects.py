@@ -9,6 +9,7 @@ from ..bindings.enums import InstanceFlag, InstanceKind, Ray, Shading
 from ..messages.severity import Severity
 from .attributes import POLYGONS
 from .light_groups import group_numbers
+from .light_linking import Links
 from .mesh import export_mesh, read_positions, shown_mesh
 from .mesh_differences import differences, lost_by_exact_shape, show_differences
 from .subdivision.divider import PLACES_OTHERWISE, size_in_words
@@ -43,6 +44,7 @@ class Look(NamedTuple):
     hidden: int  # Ray bits
     flags: int  # InstanceFlag bits
     terminator: float
+    links: Links
     placement: int  # of Objects.placements; -1 for none
     light_group: int  # 0 for none
 
@@ -50,8 +52,9 @@ class Look(NamedTuple):
 class Objects:
     """Reads each object once; meshes, looks and placements are lists indexed by their numbers."""
 
-    def __init__(self, depsgraph, materials, messages, divider, options):
-        """options: the ExportOptions."""
+    def __init__(self, depsgraph, materials, messages, divider, linking, options):
+        """linking: the LightLinking. options: the ExportOptions."""
+        self._linking = linking
         self._parts = options.parts
         self._on_mesh = options.on_mesh
         self._divider = divider
@@ -82,14 +85,18 @@ class Objects:
         else:
             # As in Cycles, an original that is a holdout or indirect only leaves its instances as they are.
             hidden |= narrowed[0]
-            holdout, indirect = narrowed[1:]
+            holdout, indirect = narrowed[1:3]
         if indirect and not holdout:
             hidden |= int(Ray.CAMERA)
         return hidden, int(InstanceFlag.HOLDOUT) if holdout else 0
 
     def narrowed_by(self, instancer):
-        """Return an instancer's effect on the visibility of its instances: (hidden Ray bits, holdout, indirect only)."""
-        return object_hidden_from(instancer), self._is_holdout(instancer), self._is_indirect(instancer)
+        """Return an instancer's effect on its instances: (hidden Ray bits, holdout, indirect only, its address).
+
+        The address is None where it is not needed.
+        """
+        key = instancer.original.as_pointer() if self._linking.has(instancer) else None
+        return object_hidden_from(instancer), self._is_holdout(instancer), self._is_indirect(instancer), key
 
     def _is_holdout(self, thing):
         if _HAS_HOLDOUT and (thing.is_holdout or thing.original.is_holdout):
@@ -113,6 +120,7 @@ class Objects:
             self._checked.add(original_key)
             check_object(owner, self.scene, self.messages)
         sight = self.sight(thing, narrowed)
+        links = self._linking.links(original_key, narrowed and narrowed[3])
         materials = _slot_materials(thing)
         is_divided = data_key == original_key
         # Without slots only nodes give materials to the mesh.
@@ -136,7 +144,7 @@ class Objects:
             self._tell_empty(name, materials, used)
         index, shading = max(0, thing.pass_index), Shading[own.shading]
         group = self.groups.get(owner.lightgroup, 0) if self.groups else 0
-        look = Look(kind, mesh, slots, index, shading, *sight, _terminator(owner), placement, group)
+        look = Look(kind, mesh, slots, index, shading, *sight, _terminator(owner), links, placement, group)
         number = self._numbers.setdefault(look, len(self.looks))
         if number == len(self.looks):
             self.looks.append(look)

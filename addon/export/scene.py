@@ -13,6 +13,7 @@ from .flat import report_flat
 from .images import Images
 from .instances import Instances
 from .light_groups import group_numbers
+from .light_linking import read_linking
 from .materials import Materials
 from .motion import read_motion
 from .outputs import rendered_aovs
@@ -76,10 +77,11 @@ def export_scene(depsgraph, options=None, poll=None):
     check_scene(scene, messages, in_view=options.view is not None)
     check_passes(scene, options.passes, messages)
     check_view_layer(scene, view_layer, messages)
+    linking = read_linking(depsgraph, messages)
     parts, cache = options.parts, texture_cache(scene)
     if parts is not None:
         parts.read_by(cache)
-        state = scene_state(depsgraph), options.sight, messages.lines()
+        state = scene_state(depsgraph), linking, options.sight, messages.lines()
         again = parts.begin(depsgraph, state, obey)
         if again is not None:
             # The messages of the last export include those of the checks above, which have not changed.
@@ -94,7 +96,7 @@ def export_scene(depsgraph, options=None, poll=None):
     divider = Divider(depsgraph, options.dicing if in_view else camera, messages, in_view)
     aovs = rendered_aovs(view_layer, options.passes)
     materials.aovs = aovs
-    instances = Instances(depsgraph, materials, messages, shaders, divider, options)
+    instances = Instances(depsgraph, materials, messages, shaders, divider, linking, options)
     instances.collect(obey)
 
     def read_sky(messages, images, value):

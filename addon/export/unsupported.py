@@ -29,7 +29,6 @@ EMPTY_PASSES = {
 }
 # Find out once which properties this Blender has: a failing getattr per object takes as long as all other checks.
 _OF_OBJECTS = bpy.types.Object.bl_rna.properties
-_HAS_LINKING = "light_linking" in _OF_OBJECTS
 _HAS_CATCHER = "is_shadow_catcher" in _OF_OBJECTS
 _HAS_OFFSET = "shadow_terminator_shading_offset" in _OF_OBJECTS
 
@@ -92,7 +91,6 @@ def _missing_passes(view_layer):
 
 
 def check_object(thing, scene, messages):
-    check_linking(thing, "object", messages)
     if _HAS_CATCHER and thing.is_shadow_catcher:
         messages.add(
             f"object '{thing.name}': shadow catchers are not supported, it is rendered as any other object",
@@ -131,20 +129,3 @@ def check_hair(thing, messages):
         if system.settings.type == "HAIR" and system.settings.render_type == "PATH":
             text = f"hair of particle system '{system.name}' is not supported, it is left out"
             messages.add(f"object '{thing.name}': {text}", "feature:hair particles", severity=Severity.LEFT_OUT)
-
-
-def check_linking(thing, kind, messages):
-    if not _HAS_LINKING:
-        return
-    linking = thing.light_linking
-    receiver, blocker = linking.receiver_collection, linking.blocker_collection
-    if receiver is not None:
-        messages.add(
-            f"{kind} '{thing.name}': light linking ('{receiver.name}') is not supported, it lights everything",
-            "feature:light linking",
-        )
-    if blocker is not None:
-        messages.add(
-            f"{kind} '{thing.name}': shadow linking ('{blocker.name}') is not supported, everything casts shadow",
-            "feature:shadow linking",
-        )

@@ -1,4 +1,4 @@
-"""The Object tab: exact shape, shading and ray visibility."""
+"""The Object tab: exact shape, shading, light linking and ray visibility."""
 
 import bpy
 
@@ -108,10 +108,49 @@ class LANCER_OBJECT_PT_ray_visibility(LancerPanel, bpy.types.Panel):
                 column.prop(thing, f"visible_{ray}", text=ray.capitalize())
 
 
+class LancerLinkingPanel(LancerPanel):
+    """A collection of the objects that a lamp or an emitting object lights, or that block its light."""
+
+    bl_context = "object"
+    bl_parent_id = "OBJECT_PT_visibility"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        thing = context.object
+        return super().poll(context) and hasattr(thing, "light_linking") and thing.type in {*_SURFACES, "LIGHT"}
+
+    def draw(self, context):
+        linking = context.object.light_linking
+        column = self._column()
+        column.template_ID(linking, self.member, new=f"object.light_linking_{self.member}_new")
+        if getattr(linking, self.member) is None:
+            return
+        row = self.layout.row()
+        column = row.column()
+        column.template_light_linking_collection(row, linking, self.member)
+        column = row.column(align=True)
+        column.operator(f"object.light_linking_{self.others}_link", icon="ADD", text="").link_state = "INCLUDE"
+        column.operator("object.light_linking_unlink_from_collection", icon="REMOVE", text="")
+        self.layout.operator(f"object.light_linking_{self.others}_select")
+
+
+class LANCER_OBJECT_PT_light_linking(LancerLinkingPanel, bpy.types.Panel):
+    bl_label = "Light Linking"
+    member, others = "receiver_collection", "receivers"
+
+
+class LANCER_OBJECT_PT_shadow_linking(LancerLinkingPanel, bpy.types.Panel):
+    bl_label = "Shadow Linking"
+    member, others = "blocker_collection", "blockers"
+
+
 CLASSES = (
     LANCER_OBJECT_PT_shading,
     LANCER_OBJECT_PT_shadow_terminator,
     LANCER_OBJECT_PT_subdivision,
     LANCER_OBJECT_PT_ray_visibility,
     LANCER_OBJECT_PT_light_group,
+    LANCER_OBJECT_PT_light_linking,
+    LANCER_OBJECT_PT_shadow_linking,
 )

@@ -28,7 +28,6 @@ ELSEWHERE = {
 # Names in the export's source that are also names of settings without effect on this test's scene.
 OF_OTHERS = {
     "action": "of animated objects; of the display of a camera's safe areas",
-    "blocker_collection": "light linking, told as not supported",
     "clip_max_y": "of curves of nodes",
     "clip_min_y": "of curves of nodes",
     "data": "the data-block itself",
@@ -56,7 +55,6 @@ OF_OTHERS = {
     "matrix": "of cameras and lamps in a snapshot",
     "matrix_world": "the result of location, rotation and scale",
     "metallic": "a socket of a shader node",
-    "receiver_collection": "light linking, told as not supported",
     "shading_system": "of scripts, told as not supported",
     "show_instancer_for_render": "of instancers, whose own surface the depsgraph leaves out",
     "show_instancer_for_viewport": "of instancers, whose own surface the depsgraph leaves out",

@@ -172,6 +172,10 @@ enum lancer_ray {
 
 enum lancer_instance_flag { LANCER_INSTANCE_HOLDOUT = 1 /* a hole in the picture: alpha 0 where it is visible */ };
 
+/* Light linking: an object is a receiver of light and a blocker of shadow rays in one of 64 sets each; 0 unless stated. A lamp
+ * or an emitting object names the sets that its light does not reach, and those that its light passes as if they were not
+ * there. Camera rays see every light. */
+
 /* One placed object. */
 typedef struct lancer_instance {
   double matrix[12];     /* object to world, 3 x 4 row-major; any invertible affine map, mirrored ones included */
@@ -189,6 +193,10 @@ typedef struct lancer_instance {
   uint32_t light_group;  /* of the light that it emits: 1 ... settings.light_groups; 0 = none */
   float terminator;      /* smooth meshes: below this cosine to the light, a shadow ray starts on the curved surface that the
                             normals describe, as with Blender's shadow terminator offset; 0 = on the triangle */
+  uint32_t receiver_set; /* light linking: its set as a receiver, 0 ... 63 */
+  uint32_t blocker_set;  /* its set as a blocker, 0 ... 63 */
+  uint64_t unlit_sets;   /* of an emitter: bits of the sets of receivers that its light does not reach */
+  uint64_t clear_sets;   /* of an emitter: bits of the sets of blockers that its light passes */
 } lancer_instance;
 
 /* ---- images ----------------------------------------------------------------------------------------------------- */
@@ -875,6 +883,8 @@ typedef struct lancer_light {
   float ambient_color[3]; /* CLASSIC: factors of emission for the ambient, diffuse and specular sums; 1, 1, 1 = one colour */
   float diffuse_color[3];
   float specular_color[3];
+  uint64_t unlit_sets; /* light linking: bits of the sets of receivers that its light does not reach */
+  uint64_t clear_sets; /* bits of the sets of blockers that its light passes */
 } lancer_light;
 
 /* ---- scene: create, fill, commit, destroy ------------------------------------------------------------------------ */

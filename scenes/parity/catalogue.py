@@ -41,6 +41,7 @@ SUBJECTS = (
     "lights_nodes",
     "lights_switches",
     "lights_exact",
+    "lights_linked",
     "worlds",
     "skies",
     "cameras",

@@ -161,7 +161,7 @@ def unsupported_node():
 def unsupported_features():
     """One of each unsupported feature, nodes excepted."""
     scene = stage.room()
-    layer, cube, lamp = bpy.context.view_layer, bpy.data.objects["Cube"], bpy.data.objects["Light"]
+    layer, cube = bpy.context.view_layer, bpy.data.objects["Cube"]
     # Strands on the cube.
     bpy.context.view_layer.objects.active = cube
     system = cube.modifiers.new("Fluff", "PARTICLE_SYSTEM").particle_system
@@ -175,12 +175,9 @@ def unsupported_features():
     sets = layer.freestyle_settings.linesets
     for lines in list(sets):
         sets.remove(lines)
-    # A shadow catcher, and light linking.
+    # A shadow catcher.
     cube.is_shadow_catcher = True
     scene.cycles.film_exposure = 2.0
-    if bpy.app.version >= (4, 0):
-        chosen = bpy.data.collections.new("Chosen")
-        lamp.light_linking.receiver_collection = lamp.light_linking.blocker_collection = chosen
     return _outcome()
 
 

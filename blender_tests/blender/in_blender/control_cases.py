@@ -156,6 +156,7 @@ class _Stage:
         stage.plane(material=stage.shader(name="Floor"))
         self.cube = stage.cube(material=self.material, location=(0, 0, 0.5))
         self.cube.modifiers.new("Subdivision", "SUBSURF").levels = 2
+        bpy.data.collections.new("Linked").objects.link(self.cube)
         self.lamp = stage.light()
         self.lamp.data.use_nodes = True
         glow = next(node for node in self.lamp.data.node_tree.nodes if node.type == "EMISSION")

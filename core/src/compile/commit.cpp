@@ -49,6 +49,14 @@ Environment make_environment(const Scene &scene, const BuildContext &context, co
   return Environment(scene.world, scene.normalisation, context, glass);
 }
 
+// Returns the bits of the sets of receivers that there are.
+uint64_t receiver_sets(const GeometryView &geometry) {
+  uint64_t sets = 0;
+  for (const Instance &instance : geometry.instances)
+    sets |= uint64_t{1} << instance.receiver_set;
+  return sets;
+}
+
 LightSet make_lights(Scene &scene, const BuildContext &context, const Scene *before) {
   EmissionAt emission(scene.node_scene(nullptr), scene.materials);
   std::vector<Light> lights;
@@ -64,7 +72,21 @@ LightSet make_lights(Scene &scene, const BuildContext &context, const Scene *bef
   const EmitterSources sources{scene.placed->owners, scene.material_owners, before ? &before->made_emitters : nullptr,
                                &scene.made_emitters};
   return LightSet(std::move(lights), make_emitters(scene.geometry, scene.slots, scene.materials, emission, context, sources),
-                  scene.geometry.instances.size(), make_environment(scene, context, before), context);
+                  scene.geometry.instances.size(), make_environment(scene, context, before), context,
+                  receiver_sets(scene.geometry));
+}
+
+// Marks the blockers that the light of some lamp or emitter passes, beside the instances that let light pass straight through.
+void find_linked_blockers(Scene &scene) {
+  if (!scene.lights.passes_blockers())
+    return;
+  uint64_t clear = 0;
+  for (uint32_t light = 0; light < scene.lights.size(); ++light)
+    clear |= scene.lights.links(light).clear_sets;
+  scene.linked_blockers = scene.transparent_instances;
+  for (size_t i = 0; i < scene.geometry.instances.size(); ++i)
+    if (clear >> scene.geometry.instances[i].blocker_set & 1)
+      scene.linked_blockers[i] = 1;
 }
 
 void make_materials_ready(Scene &scene, Description &description, const BuildContext &context) {
@@ -118,6 +140,7 @@ std::shared_ptr<const Scene> commit(const Description &given, AcceleratorKind ki
     return instance.kind == ShapeKind::Mesh && !instance.holdout && scene->cutouts[material].may_end;
   });
   scene->lights = make_lights(*scene, context, before);
+  find_linked_blockers(*scene);
   scene->plane_rules = plane_rules(*scene);
   const bool same_planes = before && before->placed == scene->placed && before->plane_rules == scene->plane_rules;
   scene->accelerator = same_planes ? before->accelerator
@@ -138,7 +161,7 @@ uint32_t Scene::face_number(uint32_t instance, uint32_t primitive) const {
 
 size_t Scene::geometry_bytes() const {
   return placed->bytes() + slots.size() * sizeof(uint32_t) + transparent_instances.size() + perforated_instances.size() +
-         lights.bytes();
+         linked_blockers.size() + lights.bytes();
 }
 
 size_t Scene::texture_bytes() const {

@@ -148,6 +148,7 @@ Light place_light(const LightDescription &from, const Normalisation &normalisati
   light.hidden_from = from.hidden_from;
   light.no_shadow = from.no_shadow;
   light.light_group = from.light_group;
+  light.links = from.links;
   light.classic = {from.falloff,       double(from.falloff_radius) * scale, scale, from.ambient_color, from.diffuse_color,
                    from.specular_color};
   return light;

@@ -39,7 +39,9 @@ struct Scene {
   std::vector<uint32_t> classes;              // by material, from shading_classes()
   std::vector<Cutout> cutouts;                // by material
   std::vector<uint8_t> transparent_instances; // by instance: some of its materials may let light pass straight through
-  std::vector<uint8_t> perforated_instances;  // by instance: it may be absent at some places, as cutouts say
+  // By instance: as transparent_instances, or some light passes it by its links; empty where no light does.
+  std::vector<uint8_t> linked_blockers;
+  std::vector<uint8_t> perforated_instances; // by instance: it may be absent at some places, as cutouts say
   WorldView world;
   LightSet lights;
   LampShaders lamp_shaders; // of lights.lamps()

@@ -88,6 +88,7 @@ public:
   bool empty() const { return !(bounds_.energy > 0.0); }
   uint32_t instance() const { return instance_; }
   uint32_t hidden_from() const { return hidden_from_; }
+  const LightLinks &links() const { return links_; }
   const LightBounds &bounds() const { return bounds_; }
   const std::shared_ptr<const EmissiveFaces> &faces() const { return faces_; }
 
@@ -108,6 +109,7 @@ public:
 
 private:
   uint32_t instance_ = kNone, hidden_from_ = 0;
+  LightLinks links_;
   LightBounds bounds_;
   std::shared_ptr<const EmissiveFaces> faces_; // of a mesh
   WeightedChoice parts_;                       // of an exact surface

@@ -90,14 +90,14 @@ void grow_along_motion(const GeometryView &geometry, uint32_t instance, LightBou
 } // namespace
 
 Emitter::Emitter(const GeometryView &geometry, uint32_t instance, std::shared_ptr<const EmissiveFaces> faces)
-    : instance_(instance), hidden_from_(geometry.instances[instance].hidden_from),
+    : instance_(instance), hidden_from_(geometry.instances[instance].hidden_from), links_(geometry.instances[instance].links),
       bounds_(faces->bounds(geometry.instances[instance])), faces_(std::move(faces)) {
   grow_along_motion(geometry, instance, bounds_);
 }
 
 Emitter::Emitter(const GeometryView &geometry, std::span<const uint32_t> slots, std::span<const MaterialView> materials,
                  uint32_t instance, EmissionAt &emission)
-    : instance_(instance), hidden_from_(geometry.instances[instance].hidden_from) {
+    : instance_(instance), hidden_from_(geometry.instances[instance].hidden_from), links_(geometry.instances[instance].links) {
   const Instance &placed = geometry.instances[instance_];
   const uint32_t number = material_of(geometry, slots, instance_, 0);
   if (placed.kind == ShapeKind::Plane || number == kNone || !is_light(materials[number]))

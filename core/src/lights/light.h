@@ -45,8 +45,9 @@ struct Light {
   uint32_t hidden_from = 0;     // RayKind bits
   bool no_shadow = false;
   uint32_t light_group = 0; // 0 = none
-  uint32_t shader = kNone;  // index of LampShaders: its strength multiplies the light; kNone: 1
-  double level = 1.0;       // mean strength, for the choice of a light
+  LightLinks links;
+  uint32_t shader = kNone; // index of LampShaders: its strength multiplies the light; kNone: 1
+  double level = 1.0;      // mean strength, for the choice of a light
   ClassicLight classic;
 };
 

@@ -42,13 +42,16 @@ struct LightBounds {
   double cost() const;
 };
 
-// A shading point that chooses a light: its position, its shading normal, and whether its surface transmits light.
+// A shading point that chooses a light: its position, its shading normal, whether its surface transmits light, and the set of
+// receivers that it belongs to.
 struct LightQuery {
   glm::dvec3 p{0.0};
   glm::vec3 n{0, 0, 1};
   bool transmits = false;
+  uint32_t receiver_set = 0;
 
-  LightQuery(const glm::dvec3 &point, const glm::vec3 &normal, bool through) : p(point), n(normal), transmits(through) {}
+  LightQuery(const glm::dvec3 &point, const glm::vec3 &normal, bool through, uint32_t set = 0)
+      : p(point), n(normal), transmits(through), receiver_set(set) {}
 };
 
 // A light, or a face of one, that was chosen.

@@ -7,13 +7,21 @@
 
 namespace lancer {
 
+// The choice among some lights: one in the tree of few, then, where it gives the number LightSet::size(), one in that of many.
+struct LightTrees {
+  BinaryLightTree few;
+  LightTree many;
+
+  double probability(const LightQuery &query, uint32_t light, uint32_t number_of_many) const;
+};
+
 class LightSet {
 public:
   LightSet() = default;
   // Described lights come first, then one light per emitting instance, then the environment where Environment::is_light().
-  // Throws BuildCancelled.
+  // receiver_sets: bits of the sets of receivers that there are. Throws BuildCancelled.
   LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, size_t instance_count, Environment environment,
-           const BuildContext &context = {});
+           const BuildContext &context = {}, uint64_t receiver_sets = 1);
 
   size_t size() const { return lamps_.size() + emitters_.size() + (environment_.is_light() ? 1 : 0); }
   bool empty() const { return size() == 0; }
@@ -44,9 +52,18 @@ public:
   }
 
   // The choice of a light is one in the binary tree, then one within the light that this step returns.
-  const BinaryLightTree &binary_tree() const { return binary_tree_; }
+  const BinaryLightTree &binary_tree() const { return trees_.few; }
   // In the binary tree, the light number size() represents all lights of wide_tree().
-  const LightTree &wide_tree() const { return wide_tree_; }
+  const LightTree &wide_tree() const { return trees_.many; }
+
+  // Light linking: whether some light reaches not all receivers, or passes blockers.
+  bool linked() const { return !links_.empty(); }
+  bool passes_blockers() const { return passes_blockers_; }
+  LightLinks links(uint32_t light) const { return linked() ? links_[light] : LightLinks{}; }
+  // Returns the trees by which a receiver chooses: those of all lights, or of the lights that reach its set.
+  const LightTrees &trees(uint32_t receiver_set) const {
+    return trees_of_.empty() ? trees_ : linked_trees_[trees_of_[receiver_set]];
+  }
   // Return the probability with which the choice returns this light, or at a time this face of an emitter.
   double probability(const LightQuery &query, uint32_t light) const;
   double probability(const GeometryView &geometry, const LightQuery &query, const Emitter &emitter, float time,
@@ -69,16 +86,23 @@ public:
 private:
   static constexpr uint32_t kNoShadow = 1u << 31;
 
+  void link(const std::vector<DescribedLight> &described, uint64_t receiver_sets, const BuildContext &context);
+
   std::vector<Light> lamps_;
   // hidden_from() and no_shadow() of all lights. These bits are read more often than the lights' other members; an array of
   // their own stays in the cache.
   std::vector<uint32_t> switches_;
   std::vector<Emitter> emitters_;
   std::vector<uint32_t> always_, emitter_of_;
-  // A few lights are all in binary_tree_ and are chosen as in Cycles. If there are many, wide_tree_ contains all lights with a
-  // position, and is one entry of binary_tree_.
-  BinaryLightTree binary_tree_;
-  LightTree wide_tree_;
+  // A few lights are all in the tree of few and are chosen as in Cycles. If there are many, the tree of many contains all
+  // lights with a position, and is one entry of the tree of few.
+  LightTrees trees_;
+  std::vector<LightLinks> links_; // of all lights; empty where none is linked
+  bool passes_blockers_ = false;
+  // The trees of sets of receivers that some light does not reach, and their numbers by set; empty where every light reaches
+  // all.
+  std::vector<LightTrees> linked_trees_;
+  std::vector<uint8_t> trees_of_;
   bool find_ = false;
   double most_before_ = 0.0;
   Environment environment_;

@@ -71,6 +71,9 @@ void check_instance(const Description &description, const std::string &object, c
     bad_argument(object + ": shading " + std::to_string(given.shading) + " is not one of 0 ... 3");
   check_rays(object, given.hidden_from);
   check_flags(object + ": ", given.flags, LANCER_INSTANCE_HOLDOUT);
+  for (const uint32_t set : {given.receiver_set, given.blocker_set})
+    if (set >= kLinkSets)
+      bad_argument(object + ": set " + std::to_string(set) + " of light linking is not one of 0 ... 63");
   if (uint64_t(given.first_slot) + given.slot_count > slot_count)
     bad_argument(object + ": slots " + std::to_string(given.first_slot) + " + " + std::to_string(given.slot_count) + " > " +
                  std::to_string(slot_count) + " slots");
@@ -141,6 +144,9 @@ void add_instances(Description &description, uint32_t count, const lancer_instan
     instance.hidden_from = given.hidden_from;
     instance.terminator = std::isfinite(given.terminator) ? std::clamp(given.terminator, 0.0f, 1.0f) : 0.0f;
     instance.holdout = (given.flags & LANCER_INSTANCE_HOLDOUT) != 0;
+    instance.receiver_set = given.receiver_set;
+    instance.blocker_set = given.blocker_set;
+    instance.links = {given.unlit_sets, given.clear_sets};
     description.instances.push_back(std::move(instance));
   }
   description.instances_given += count;

@@ -118,6 +118,7 @@ LightDescription read_light(const lancer_light &source, size_t number, Images im
     light.spread = reader.read("spread", source.spread, 0.0f, glm::pi<float>());
     light.hidden_from = source.hidden_from;
     light.no_shadow = source.no_shadow != 0;
+    light.links = {source.unlit_sets, source.clear_sets};
     light.falloff = static_cast<Falloff>(source.falloff);
     light.falloff_radius = reader.read("falloff radius", source.falloff_radius, 0.0f, kBrightest);
     light.ambient_color = reader.read("ambient colour", source.ambient_color);

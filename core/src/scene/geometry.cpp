@@ -70,6 +70,7 @@ bool Instance::same(const Instance &other) const {
          object_index == other.object_index && object_matte == other.object_matte && asset_matte == other.asset_matte &&
          light_group == other.light_group && hidden_from == other.hidden_from && holdout == other.holdout &&
          bits(terminator, other.terminator) && number == other.number && bits(flat_axis, other.flat_axis) &&
+         receiver_set == other.receiver_set && blocker_set == other.blocker_set && links == other.links &&
          first_key == other.first_key && key_count == other.key_count;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "scene/affine.h"
+#include "scene/light_links.h"
 #include "scene/motion.h"
 #include "scene/once.h"
 
@@ -140,9 +141,11 @@ struct Instance {
   uint32_t light_group = 0;                   // of its own light; 0 = none
   uint32_t hidden_from = 0;                   // RayKind bits
   bool holdout = false;
-  float terminator = 0.0f;               // of smooth meshes: cosine below which shadow rays start on the curved surface
-  uint32_t number = 0;                   // in the user's order of adding
-  glm::dvec3 flat_axis{0.0};             // object space, unit: the direction that a flattening placement loses; else 0
+  float terminator = 0.0f;   // of smooth meshes: cosine below which shadow rays start on the curved surface
+  uint32_t number = 0;       // in the user's order of adding
+  glm::dvec3 flat_axis{0.0}; // object space, unit: the direction that a flattening placement loses; else 0
+  uint32_t receiver_set = 0, blocker_set = 0;
+  LightLinks links;                      // of the light that it emits
   uint32_t first_key = 0, key_count = 0; // of the geometry's keys; 0: the instance stands still
 
   // Places the shape; the map must be invertible.

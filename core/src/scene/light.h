@@ -2,6 +2,7 @@
 #pragma once
 
 #include "scene/affine.h"
+#include "scene/light_links.h"
 #include "scene/node.h"
 
 #include <cstdint>
@@ -34,6 +35,7 @@ struct LightDescription {
   uint32_t hidden_from = 0; // RayKind bits
   bool no_shadow = false;
   uint32_t light_group = 0; // 0 = none
+  LightLinks links;
   // CLASSIC only.
   Falloff falloff = Falloff::Physical;
   float falloff_radius = 0.0f;

@@ -171,6 +171,9 @@ void ClassicIntegrator::sample(uint32_t number, const Doubles (&p)[3], const Flo
     asking |= uint32_t(!lights.behind(number, get(p, lane), get(ng, lane))) << lane;
   if (number >= lights.lamps().size() && !LightSet::lit_by(lights.hidden_from(number)))
     asking = 0;
+  const LightLinks links = lights.links(number);
+  for (uint32_t lane = 0; lane < surfaces_.count() && links.unlit_sets != 0; ++lane)
+    asking &= ~(uint32_t{!links.reaches(surfaces_.instance(lane).receiver_set)} << lane);
   if (number >= lights.lamps().size() || has_extent(lights.lamps()[number]))
     each_lane(asking, [&](uint32_t lane) {
       const glm::vec2 u = light_numbers(branch_of(lane), number);
@@ -213,7 +216,8 @@ void ClassicIntegrator::send_shadow(uint32_t number, uint32_t lane, const glm::v
   const glm::vec3 contribution = branch_of(lane).weight * light;
   if (scene_.lights.no_shadow(number))
     return shadows_.push_lit(waiting, contribution);
-  write_shadow_ray(scene_, surfaces_, lane, light_.samples(), lit_block_, shadows_.push(waiting, contribution));
+  write_shadow_ray(scene_, surfaces_, lane, light_.samples(), lit_block_,
+                   shadows_.push(waiting, contribution, 0, scene_.lights.links(number)));
 }
 
 // Moves all lanes to a corner of their triangles, as if the rays had hit it.

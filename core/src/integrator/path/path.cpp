@@ -70,6 +70,8 @@ void PathIntegrator::shade() {
   next_.clear();
   // Add lamps; sort the hits into queues; add the environment.
   add_lamps();
+  if (linked_)
+    add_linked_lights();
   film_.count_occluded(queue_.paths, queue_.rays, hits_, occlusion_);
   missed_.clear();
   queues_.begin();
@@ -109,6 +111,27 @@ void PathIntegrator::add_lamps() {
     const Path &path = queue_.paths[met.ray];
     if (path.shows_light(scene_.lights.hidden_from(met.light)))
       film_.add(path, path.beta * met.radiance * met.weight, false, scene_.lights.lamps()[met.light].light_group);
+  }
+}
+
+// Queues the lights that pass blockers, on the way of each ray that leaves a scattering, with their shadow rays.
+void PathIntegrator::add_linked_lights() {
+  const auto path_at = [&](size_t ray, double distance) {
+    return queue_.paths[ray].light_path(distance / scene_.normalisation.scale, distance);
+  };
+  for (const LinkedLight &met : linked_->find(
+           queue_.rays, queue_.from, [&](size_t ray) { return queue_.paths[ray].asking_path(); }, path_at)) {
+    const Path &path = queue_.paths[met.ray];
+    const glm::vec3 contribution = path.beta * met.radiance * met.weight;
+    if (!path.shows_light(met.hidden_from) || contribution == glm::vec3(0.0f))
+      continue;
+    Ray ray = queue_.rays[met.ray];
+    if (const bool far = std::isinf(met.target.x); !far) {
+      ray.d = met.target - ray.o;
+      ray.tmax = 1.0;
+    }
+    ray.kinds = RayKind::Shadow;
+    shadow_.push(ray, film_.waiting(path, met.group), contribution, path.passed_through, met.links);
   }
 }
 
@@ -238,6 +261,8 @@ void PathIntegrator::split() {
 // Samples a light in every lane that may scatter light, or several lights in a lane that splits.
 void PathIntegrator::light() {
   uint32_t asking = ((1u << surface_.count()) - 1u) & ~ends_;
+  if (scene_.lights.linked())
+    each_lane(asking, [&](uint32_t lane) { light_.receive(lane, surface_.instance(lane).receiver_set); });
   const uint32_t count = splitting_ ? settings_.splits.lights : 1;
   for (uint32_t number = 0; number < count; ++number) {
     if (splitting_)
@@ -270,7 +295,7 @@ void PathIntegrator::send_shadow(uint32_t lane) {
   const glm::vec3 contribution = get(light_.lit().contribution, lane);
   if (scene_.lights.no_shadow(light_.chosen(lane)))
     return shadow_.push_lit(waiting, contribution);
-  Ray &ray = shadow_.push(waiting, contribution, path.passed_through);
+  Ray &ray = shadow_.push(waiting, contribution, path.passed_through, scene_.lights.links(light_.chosen(lane)));
   if (shadow_.asks_light_path())
     shadow_.set_light_path(asking_path(lane));
   write_shadow_ray(scene_, surface_, lane, light_.samples(), light_.lit(), ray);

@@ -6,6 +6,7 @@
 #include "integrator/stages/camera.h"
 #include "integrator/stages/hit.h"
 #include "integrator/stages/light.h"
+#include "integrator/stages/linked_lights.h"
 #include "integrator/stages/met_lights.h"
 #include "integrator/stages/node_rays.h"
 #include "integrator/stages/occlusion.h"
@@ -30,6 +31,8 @@ public:
         occlusion_(scene, settings), shadow_(scene, camera, settings), last_bounces_(settings.max_bounces) {
     if (std::ranges::any_of(scene.materials, [](const MaterialView &material) { return material.program.looks_around; }))
       surface_.look_by(node_rays_.emplace(scene).functions());
+    if (scene.lights.passes_blockers())
+      linked_.emplace(scene, camera);
     if (scene.features & kFeatureSubsurface) {
       surface_.walk_below();
       walk_.emplace(scene);
@@ -67,6 +70,7 @@ private:
   void shade();
   void shade_queued();
   void add_lamps();
+  void add_linked_lights();
   void add_environment();
   void put_in_lane(size_t number, const MaterialView &material);
   void shade_block();
@@ -100,6 +104,7 @@ private:
   PathFilm film_;
   HitStage hit_;
   MetLights met_;
+  std::optional<LinkedLights> linked_; // if some light passes blockers
   ShadingQueues queues_;
   TexturePrefetch textures_;
   std::optional<SceneNodeRays> node_rays_; // if a node looks around

@@ -244,6 +244,17 @@ WaitingLight PathFilm::waiting(const Path &path, const Floats (&share)[2][3], ui
   return light;
 }
 
+WaitingLight PathFilm::waiting(const Path &path, uint32_t group) const {
+  WaitingLight light;
+  light.target = path.sample;
+  light.group = group;
+  light.sum = sum_of(path);
+  light.indirect = path.scatterings > 1;
+  for (int component = 0; component < 2 && passes.components() && !path.in_view; ++component)
+    light.share[component] = shares_[sum(path)].of[component];
+  return light;
+}
+
 void PathFilm::set_shares(const Path &path, const Path &next, const Floats (&share)[2][3], uint32_t lane) {
   if (next.in_view || !passes.components())
     return;

@@ -49,6 +49,8 @@ public:
   void add(const Path &path, const glm::vec3 &radiance, bool environment, uint32_t group);
   // Returns the record of a lane's light sample that waits for its shadow ray. share: LitBlock::share; chosen: the light.
   WaitingLight waiting(const Path &path, const Floats (&share)[2][3], uint32_t lane, uint32_t chosen) const;
+  // Returns that of light on the way of a path's ray. group: of the light.
+  WaitingLight waiting(const Path &path, uint32_t group) const;
   // Adds the part of a light sample's contribution that its shadow ray transmits.
   void add_lit(const WaitingLight &waiting, const glm::vec3 &light);
   // Subtracts a share from the alpha of a sample.

@@ -65,7 +65,7 @@ void PathIntegrator::pass_straight(uint32_t lane) {
     if (const Portal *portal = choose_portal(lane, path))
       enter_portal(lane, *portal, next);
     // Cycles weighs no light sample against a ray beyond a portal.
-    from = {next.o, glm::vec3(0.0f), true, 0.0, 0.0};
+    from = {next.o, glm::vec3(0.0f), true, 0.0, 0.0, from.receiver_set};
     path.story.pass_portal();
   } else {
     // A path after its last bounce enters no portal.
@@ -173,7 +173,8 @@ void PathIntegrator::scatter(uint32_t lane, uint32_t branch) {
     next.spread = std::max(next.spread, std::sqrt(block.mean_alpha2[lane]));
   film_.set_shares(path, next, block.share, lane);
   next_.from.push_back({get(surface_.surfaces().p, lane), get(surface_.lobes().ns, lane),
-                        (surface_.lobes().transmits >> lane & 1) != 0, block.pdf[lane], 0.0});
+                        (surface_.lobes().transmits >> lane & 1) != 0, block.pdf[lane], 0.0,
+                        surface_.instance(lane).receiver_set});
   scatter_.write_ray(lane, surface_.hit(lane), next.kinds, surface_.surfaces().time[lane], next_.rays.emplace_back());
 }
 

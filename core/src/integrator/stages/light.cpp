@@ -37,8 +37,12 @@ void LightStage::choose(uint32_t asking, const SurfaceBlock &surfaces, const Lob
   if (lights.binary_tree().empty())
     return;
   asking &= lobes.scatters & lobes.used;
-  kernel_.choose(surfaces, lobes, numbers, lights.binary_tree().nodes(), choices_);
-  choose_of_many(asking, surfaces, lobes);
+  if (lights.linked()) {
+    choose_by_sets(asking, surfaces, lobes, numbers);
+  } else {
+    kernel_.choose(surfaces, lobes, numbers, lights.binary_tree().nodes(), choices_);
+    choose_of_many(asking, lights.wide_tree(), surfaces, lobes);
+  }
   each_lane(asking, [&](uint32_t lane) {
     const uint32_t light = choices_.number[lane];
     if (!(choices_.probability[lane] > 0.0))
@@ -57,9 +61,31 @@ void LightStage::choose(uint32_t asking, const SurfaceBlock &surfaces, const Lob
   choose_faces(surfaces, lobes);
 }
 
+// Lets the lanes of each set of receivers choose among the lights that reach it.
+void LightStage::choose_by_sets(uint32_t asking, const SurfaceBlock &surfaces, const LobeBlock &lobes,
+                                const VertexNumbers &numbers) {
+  std::fill_n(choices_.probability, kBlockLanes, 0.0);
+  for (uint32_t rest = asking; rest != 0;) {
+    const uint32_t set = receiver_set_[std::countr_zero(rest)];
+    uint32_t lanes = 0;
+    each_lane(rest, [&](uint32_t lane) { lanes |= uint32_t(receiver_set_[lane] == set) << lane; });
+    rest &= ~lanes;
+    const LightTrees &trees = scene_.lights.trees(set);
+    if (trees.few.empty())
+      continue;
+    kernel_.choose(surfaces, lobes, numbers, trees.few.nodes(), of_set_);
+    each_lane(lanes, [&](uint32_t lane) {
+      choices_.number[lane] = of_set_.number[lane];
+      choices_.probability[lane] = of_set_.probability[lane];
+      choices_.rest[lane] = of_set_.rest[lane];
+    });
+    choose_of_many(lanes, trees.many, surfaces, lobes);
+  }
+}
+
 // Continues the choice in the lanes that have chosen the cluster of all lights with a position.
-void LightStage::choose_of_many(uint32_t asking, const SurfaceBlock &surfaces, const LobeBlock &lobes) {
-  if (scene_.lights.wide_tree().empty())
+void LightStage::choose_of_many(uint32_t asking, const LightTree &many, const SurfaceBlock &surfaces, const LobeBlock &lobes) {
+  if (many.empty())
     return;
   LightWalk walks[kBlockLanes];
   uint32_t lanes[kBlockLanes], count = 0;
@@ -69,7 +95,7 @@ void LightStage::choose_of_many(uint32_t asking, const SurfaceBlock &surfaces, c
     walks[count] = LightTree::walk(query_of(surfaces, lobes, lane), choices_.rest[lane]);
     lanes[count++] = lane;
   });
-  scene_.lights.wide_tree().choose({walks, count});
+  many.choose({walks, count});
   for (uint32_t i = 0; i < count; ++i) {
     choices_.number[lanes[i]] = walks[i].number;
     choices_.probability[lanes[i]] *= walks[i].probability;

@@ -137,6 +137,8 @@ class LightStage {
 public:
   LightStage(const Scene &scene, const Camera *camera);
 
+  // Sets the set of receivers of a lane's surface; needed where lights are linked.
+  void receive(uint32_t lane, uint32_t set) { receiver_set_[lane] = set; }
   // Chooses a light for each of these lanes and samples it. path(lane): returns the Light Path of a light sample at the vertex.
   template <class PathOf>
   void ask(uint32_t lanes, const SurfaceBlock &surfaces, const LobeBlock &lobes, const VertexNumbers &numbers, PathOf &&path) {
@@ -176,7 +178,8 @@ public:
 private:
   void choose(uint32_t lanes, const SurfaceBlock &surfaces, const LobeBlock &lobes, const VertexNumbers &numbers);
   void begin();
-  void choose_of_many(uint32_t lanes, const SurfaceBlock &surfaces, const LobeBlock &lobes);
+  void choose_by_sets(uint32_t lanes, const SurfaceBlock &surfaces, const LobeBlock &lobes, const VertexNumbers &numbers);
+  void choose_of_many(uint32_t lanes, const LightTree &many, const SurfaceBlock &surfaces, const LobeBlock &lobes);
   void choose_faces(const SurfaceBlock &surfaces, const LobeBlock &lobes);
   void sample_faces(const Doubles (&p)[3]);
   // Stores the sample of a face with the light that its point emits.
@@ -224,6 +227,8 @@ private:
   LampStage lamp_nodes_;
   bool has_lamp_shaders_;
   LightChoices choices_{};
+  uint32_t receiver_set_[kBlockLanes] = {};
+  LightChoices of_set_{}; // of the receivers of one set
   const Light *lamp_[kBlockLanes];
   Words face_;                                    // of the chosen emitter
   const float *time_ = nullptr;                   // of the vertices, by lane

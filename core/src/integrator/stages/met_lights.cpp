@@ -41,8 +41,8 @@ void MetLights::find(std::span<const Ray> rays, std::span<const Hit> hits, std::
 void MetLights::meet_lamp(uint32_t lanes, uint32_t light) {
   const BinaryLightTree &few = scene_.lights.binary_tree();
   const uint32_t place = few.place_of(light);
-  // A light that is not in the binary tree is in the tree of many lights.
-  if (place == kNone)
+  // A light that is not in the binary tree is in the tree of many lights. Linked lights are in trees by the set of receivers.
+  if (place == kNone || scene_.lights.linked())
     return each_lane(lanes, [&](uint32_t lane) { meet_alone(first_ + lane, light); });
   kernel_.meet(segments_, scene_.lights.lamps()[light], few.nodes(), place, block_);
   each_lane(lanes, [&](uint32_t lane) {
@@ -71,17 +71,25 @@ bool MetLights::is_on_segment(size_t ray, const LightHit &hit) const {
 
 // chosen: the probability with which sampling chooses the light.
 void MetLights::add(size_t ray, uint32_t light, const LightHit &hit, double chosen) {
+  if (!from_[ray].meets(scene_.lights.links(light)))
+    return;
   const double pdf = from_[ray].pdf;
   met_.push_back({ray, light, hit.radiance, pdf > 0.0 ? mis_weight(pdf, hit.pdf * chosen) : 1.0f, hit.distance});
 }
 
-float MetLights::emission_weight(const Scattering &from, const Surface &surface) const {
-  const Emitter *emitter = from.pdf > 0.0 ? scene_.lights.emitter_of(surface.instance) : nullptr;
-  if (!emitter)
+float emitter_weight(const Scene &scene, const Scattering &from, const Emitter &emitter, const Surface &surface) {
+  if (!(from.pdf > 0.0))
     return 1.0f;
-  const double pdf = emitter->face_pdf(scene_.geometry, from.p, surface);
-  return mis_weight(from.pdf,
-                    pdf * scene_.lights.probability(scene_.geometry, from.query(), *emitter, surface.time, surface.primitive));
+  const double pdf = emitter.face_pdf(scene.geometry, from.p, surface);
+  return mis_weight(from.pdf, pdf * scene.lights.probability(scene.geometry, from.query(), emitter, surface.time, surface.primitive));
+}
+
+float MetLights::emission_weight(const Scattering &from, const Surface &surface) const {
+  const Emitter *emitter = scene_.lights.emitter_of(surface.instance);
+  // An object that is not sampled as a light has links, too; its light passes no blockers.
+  if (!from.meets(emitter ? emitter->links() : LightLinks{scene_.geometry.instances[surface.instance].links.unlit_sets}))
+    return 0.0f;
+  return emitter ? emitter_weight(scene_, from, *emitter, surface) : 1.0f;
 }
 
 void MetLights::add_miss(uint32_t lane, const glm::dvec3 &d, LightPath<float> path, const glm::dvec3 *eye) {

@@ -14,13 +14,21 @@ namespace lancer {
 // ray: its origin; n is 0.
 struct Scattering {
   glm::dvec3 p{0.0};
-  glm::vec3 n{0.0f};      // shading normal
-  bool transmits = false; // some lobe scatters light to the other side
-  double pdf = 0.0;       // ScatterBlock::pdf of the ray; 0 after the camera or a single direction
-  double passed = 0.0;    // normalised distance to the ray's origin, through transparent surfaces
+  glm::vec3 n{0.0f};             // shading normal
+  bool transmits = false;        // some lobe scatters light to the other side
+  double pdf = 0.0;              // ScatterBlock::pdf of the ray; 0 after the camera or a single direction
+  double passed = 0.0;           // normalised distance to the ray's origin, through transparent surfaces
+  uint32_t receiver_set = kNone; // of the surface; kNone: of the camera, which sees every light
 
-  LightQuery query() const { return LightQuery(p, n, transmits); }
+  LightQuery query() const { return LightQuery(p, n, transmits, receiver_set); }
+  // Whether the light of these links reaches the scattering along its ray, without a shadow ray that passes blockers.
+  bool meets(const LightLinks &links) const {
+    return receiver_set == kNone || (links.reaches(receiver_set) && links.clear_sets == 0);
+  }
 };
+
+// Returns the weight of the light of an emitter's surface that a ray has hit, against light samples.
+float emitter_weight(const Scene &scene, const Scattering &from, const Emitter &emitter, const Surface &surface);
 
 // A lamp on the way of a ray.
 struct MetLight {
@@ -46,7 +54,7 @@ public:
       shade(path);
     return met_;
   }
-  // Returns the weight of the emission of a surface that a ray has hit.
+  // Returns the weight of the emission of a surface that a ray has hit; 0 where its light does not reach the last scattering.
   float emission_weight(const Scattering &from, const Surface &surface) const;
 
   // The environment in the directions of rays that hit nothing: add the rays lane by lane, look, then read the results. path:

@@ -55,6 +55,11 @@ uint64_t ShadowStage::trace_clear() {
 }
 
 bool ShadowStage::counts(size_t ray, const Hit &hit) {
+  if (waiting_[ray].links.passes(scene_.geometry.instances[hit.instance].blocker_set))
+    return false;
+  // Instances that only links let light pass ask, too.
+  if (!scene_.transparent_instances[hit.instance])
+    return true;
   Crossing *known = crossings_.find(ray, hit);
   if (known && known->hit.primitive == hit.primitive)
     return false;

@@ -22,8 +22,9 @@ void write_shadow_ray(const Scene &scene, const SurfaceStage &surfaces, uint32_t
 class ShadowStage final : HitFilter {
 public:
   ShadowStage(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
-      : HitFilter(scene.transparent_instances.data()), scene_(scene), shader_(scene, &camera),
-        deepest_(settings.transparent_shadows), any_clear_(settings.all_features() || (scene.features & kFeatureTransparency)),
+      : HitFilter((scene.linked_blockers.empty() ? scene.transparent_instances : scene.linked_blockers).data()), scene_(scene),
+        shader_(scene, &camera), deepest_(settings.transparent_shadows),
+        any_clear_(settings.all_features() || (scene.features & kFeatureTransparency) || !scene.linked_blockers.empty()),
         asks_light_path_(std::ranges::any_of(scene.materials,
                                              [](const MaterialView &m) {
                                                return (m.program.asks_light_path || m.program.mipmapped) &&
@@ -32,15 +33,16 @@ public:
         crossings_(scene.geometry) {}
 
   // Queues a contribution; trace() multiplies it by the ray's transmittance. passed: the number of surfaces that the path has
-  // already passed straight through; they count against the same limit (CLASSIC: 0).
-  void push(const Ray &ray, const WaitingLight &waiting, const glm::vec3 &contribution, uint32_t passed = 0) {
+  // already passed straight through; they count against the same limit (CLASSIC: 0). links: of the light.
+  void push(const Ray &ray, const WaitingLight &waiting, const glm::vec3 &contribution, uint32_t passed = 0,
+            const LightLinks &links = {}) {
     rays_.push_back(ray);
-    waiting_.push_back({waiting, contribution, passed});
+    waiting_.push_back({waiting, contribution, passed, links});
   }
   // Queues a contribution and returns its ray for the caller to write in place: a copy would stall on the pending stores of its
   // members.
-  Ray &push(const WaitingLight &waiting, const glm::vec3 &contribution, uint32_t passed = 0) {
-    waiting_.push_back({waiting, contribution, passed});
+  Ray &push(const WaitingLight &waiting, const glm::vec3 &contribution, uint32_t passed = 0, const LightLinks &links = {}) {
+    waiting_.push_back({waiting, contribution, passed, links});
     return rays_.emplace_back();
   }
 
@@ -77,6 +79,7 @@ private:
     WaitingLight light;
     glm::vec3 contribution{0.0f}; // arriving part of the light
     uint32_t passed = 0;          // surfaces passed so far
+    LightLinks links;             // of the light
   };
 
   static LightPath<float> shadow_path() { return {.kinds = RayKind::Shadow}; }
