@@ -92,6 +92,9 @@ class PictureError:
     high: float
     cannot_exclude: float
     clipped: float
+    clipped_direct: float
+    cut: float
+    no_caustics: float
     missing: float
     planned_samples: float
     least_samples: int

@@ -160,6 +160,7 @@ class World(Parameters, struct=structs.World):
     light_group: int = 0  # 1 is the first; 0 = none
     hidden_from: int = 0  # Ray bits
     map_resolution: int = 0
+    lit_surfaces: int = 0  # 0: all
     ambient: tuple | None = None  # ambient light, which Ka reflects in CLASSIC; None: the mean of the radiance
 
     def __post_init__(self):

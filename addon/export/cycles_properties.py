@@ -46,13 +46,17 @@ _CAUSTICS = "acts with a receiver of shadow caustics alone, which is reported"
 
 _SCENE = {
     **_followed("glass shows a transparent film", "film_transparent_glass", "film_transparent_roughness"),
-    **_told("Lancer's limits are its own", "max_bounces", "transparent_max_bounces", "sample_clamp_indirect"),
-    **_told("Lancer has no limit for a kind of bounce", "diffuse_bounces", "glossy_bounces", "transmission_bounces"),
-    **_told("Lancer renders all light", "blur_glossy", "sample_clamp_direct", "caustics_reflective", "caustics_refractive"),
+    **_followed("clamps direct light", "sample_clamp_direct"),
+    **_followed("leaves caustics out", "caustics_reflective", "caustics_refractive"),
+    **_followed("scales the picture", "film_exposure"),
+    **_told(
+        "Lancer's limits are its own, off by default, and Take Over Cycles' Settings copies them",
+        "max_bounces", "transparent_max_bounces", "sample_clamp_indirect", "diffuse_bounces", "glossy_bounces",
+        "transmission_bounces", "blur_glossy",
+    ),
     **_told("Lancer lets light bounce on", "use_fast_gi"),
     **_told("Lancer's filter is its own", "pixel_filter_type", "filter_width"),
     **_told("Lancer spreads samples over the pixel", "use_pixel_jitter"),
-    **_told("colour management has the exposure", "film_exposure"),
     **_told("Lancer leaves nothing out", "use_camera_cull", "use_distance_cull"),
     **_told("Lancer keeps images in full size", "texture_limit", "texture_limit_render"),
     **_told("Lancer keeps images in full size", "texture_resolution", "texture_resolution_render"),
@@ -131,14 +135,14 @@ _OBJECT = {
 _LIGHT = {
     **_followed("casts shadows", "cast_shadow", before=(4, 2)),
     **_followed("a portal gives no light of its own", "is_portal"),
-    **_told("the scene's Max Bounces holds for all lamps", "max_bounces"),
+    **_followed("ends its light samples", "max_bounces"),
     **_told("mirrors and glass show every lamp that has a size", "use_multiple_importance_sampling"),
     **_none(_CAUSTICS, "is_caustics_light"),
 }
 
 _WORLD = {
     **_followed("samples the sky", "sampling_method", "sample_map_resolution"),
-    **_told("the scene's Max Bounces holds for the sky", "max_bounces"),
+    **_followed("ends its light samples", "max_bounces"),
     **_told("the sky casts shadows", "use_shadows"),
     **_none(_CAUSTICS, "is_caustics_light"),
     **_none(_VOLUMES, "homogeneous_volume", "volume_sampling", "volume_interpolation", "volume_step_size"),

@@ -9,6 +9,7 @@ cycles_properties.py lists all settings.
 from ..messages.severity import Severity
 
 _KINDS = ("diffuse", "glossy", "transmission")
+_LIMITS = ("max_bounces", *(f"{kind}_bounces" for kind in _KINDS), "transparent_bounces", "clamp_indirect", "filter_glossy")
 
 
 # A Gaussian of Cycles' width w has the standard deviation w / 4, its Blackman-Harris window 0.27702 w: at this share of the
@@ -36,26 +37,30 @@ def _light_paths(own, cycles):
     theirs = [("max_bounces", f"Total {cycles.max_bounces}")] if cycles.max_bounces != own.max_bounces else []
     # A limit of one kind has no effect if it is not below the limit of all bounces.
     deepest = min(cycles.max_bounces, own.max_bounces)
+    ours = [f"Max Bounces {own.max_bounces}"]
     for kind in _KINDS:
-        limit = getattr(cycles, f"{kind}_bounces")
-        if limit < deepest:
+        limit, here = (min(getattr(owner, f"{kind}_bounces"), deepest) for owner in (cycles, own))
+        if limit != here:
             theirs.append((f"{kind}_bounces", f"{kind.capitalize()} {limit}"))
+        if here < deepest:
+            ours.append(f"{kind.capitalize()} {here}")
     # Cycles has one more than Lancer's largest number.
     layers = min(cycles.transparent_max_bounces, own.bl_rna.properties["transparent_bounces"].hard_max)
     if layers != own.transparent_bounces:
         theirs.append(("transparent_max_bounces", f"Transparent {layers}"))
-    if cycles.blur_glossy > 0.0:
+    if cycles.blur_glossy > 0.0 and cycles.blur_glossy != own.filter_glossy:
         theirs.append(("blur_glossy", f"Filter Glossy {cycles.blur_glossy:g}"))
     if cycles.sample_clamp_indirect > 0.0 and cycles.sample_clamp_indirect != own.clamp_indirect:
         theirs.append(("sample_clamp_indirect", f"Clamp Indirect {cycles.sample_clamp_indirect:g}"))
-    ours = [f"Max Bounces {own.max_bounces}"]
     if layers != own.transparent_bounces:
         ours.append(f"Transparent {own.transparent_bounces}")
     if own.clamp_indirect > 0.0:
         ours.append(f"Clamp Indirect {own.clamp_indirect:g}")
+    if own.filter_glossy > 0.0:
+        ours.append(f"Filter Glossy {own.filter_glossy:g}")
     changed = any(_changed(cycles, name) for name, _ in theirs)
     # Leave out the limits of a new scene, which are defaults.
-    if theirs and (changed or any(_changed(own, name) for name in ("max_bounces", "transparent_bounces", "clamp_indirect"))):
+    if theirs and (changed or any(_changed(own, name) for name in _LIMITS)):
         told = _listed([words for _, words in theirs])
         severity = Severity.DIFFERENT if changed else Severity.HINT
         yield f"Cycles limits light by {told}, Lancer by {_listed(ours)}: set both alike for a comparison", severity
@@ -90,16 +95,8 @@ def _listed(words):
 
 
 def _light(cycles):
-    if cycles.film_exposure != 1.0:
-        told = f"Cycles' film exposure ({cycles.film_exposure:g})"
-        yield f"{told} is not supported, use the exposure of colour management"
     if cycles.use_fast_gi:
         yield "Cycles' Fast GI Approximation is not supported, light bounces on"
-    if cycles.sample_clamp_direct > 0.0:
-        yield f"Cycles' Clamp Direct Light ({cycles.sample_clamp_direct:g}) is not supported, direct light is not clamped"
-    for name in ("reflective", "refractive"):
-        if not getattr(cycles, f"caustics_{name}"):
-            yield f"Cycles' {name} caustics are off, which is not supported, Lancer shows them"
     if getattr(cycles, "use_pixel_jitter", False):
         yield "Cycles' Pixel Jitter is not supported, samples are spread over the pixel"
 

@@ -18,6 +18,7 @@ from .shader_cache import Sources
 from .surface import emission_of
 from .visibility import object_hidden_from
 
+_DEEPEST = 1024  # Blender's largest number of bounces, which stands for no limit
 _KINDS = {"POINT": LightKind.POINT, "SPOT": LightKind.SPOT, "SUN": LightKind.SUN, "AREA": LightKind.AREA}
 
 
@@ -107,6 +108,7 @@ def export_light(thing, matrix_world, messages, depsgraph=None, hidden=None, shi
         spread=messages.number(getattr(light, "spread", math.pi), who, "spread", math.pi, 0.0, math.pi),
         hidden_from=(object_hidden_from(thing) if hidden is None else hidden) & ~int(Ray.SHADOW),
         no_shadow=not _casts_shadow(light),
+        lit_surfaces=lit_surfaces(light),
         falloff=Falloff[own.falloff],
         falloff_radius=messages.number(own.radius, who, "falloff radius", 10.0, 1e-12),
         ambient_color=_ambient(own, who, messages),
@@ -132,6 +134,12 @@ def _ambient(own, who, messages):
     if not own.use_ambient:
         return 0.0, 0.0, 0.0
     return messages.color(own.ambient_color, who, "ambient colour", 1.0) if own.use_separate_colors else (1.0, 1.0, 1.0)
+
+
+def lit_surfaces(owner):
+    """Return on how many surfaces of a path Cycles' limit of bounces lets a lamp or a world give light samples; 0 = on all."""
+    limit = getattr(getattr(owner, "cycles", None), "max_bounces", _DEEPEST)
+    return limit + 1 if limit < _DEEPEST else 0
 
 
 def _casts_shadow(light):
@@ -183,11 +191,6 @@ def _area(light, matrix, who, messages):
 
 def _check(thing, light, who, messages):
     cycles = getattr(light, "cycles", None)
-    if getattr(cycles, "max_bounces", 1024) < 1024:
-        messages.add(
-            f"{who}: its own limit of {cycles.max_bounces} bounces is not supported, the scene's Max Bounces is used",
-            "feature:bounce limit of a lamp",
-        )
     if getattr(light, "use_custom_distance", False) and bpy.app.version < (4, 2):
         messages.add(f"{who}: custom distance has no effect, as in Cycles")
     if not getattr(cycles, "use_multiple_importance_sampling", True):

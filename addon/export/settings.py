@@ -25,6 +25,19 @@ def threads_of(scene):
     return render.threads if render.threads_mode == "FIXED" else default_threads
 
 
+def _of_cycles(scene):
+    """Return the settings of Cycles that a scene's picture follows: those that do nothing by default, so that the file asks."""
+    cycles = getattr(scene, "cycles", None)
+    if cycles is None:
+        return {}
+    return {
+        "clamp_direct": cycles.sample_clamp_direct,
+        "no_reflections": not cycles.caustics_reflective,
+        "no_refractions": not cycles.caustics_refractive,
+        "exposure": cycles.film_exposure,
+    }
+
+
 def export_settings(depsgraph, passes, world, messages):
     """Return the snapshot.Settings of a depsgraph. world: the layer's evaluated world, or None.
 
@@ -48,6 +61,11 @@ def export_settings(depsgraph, passes, world, messages):
         time_limit=own.time_limit,
         seed=seed & 0xFFFFFFFF,
         max_bounces=bounces,
+        diffuse_bounces=own.diffuse_bounces,
+        glossy_bounces=own.glossy_bounces,
+        transmission_bounces=own.transmission_bounces,
+        filter_glossy=own.filter_glossy,
+        **_of_cycles(scene),
         contribution_threshold=own.contribution_threshold,
         clamp_indirect=own.clamp_indirect,
         split_lights=0,

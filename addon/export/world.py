@@ -36,11 +36,6 @@ def export_world(world, images, depsgraph, messages, aovs=()):
     graph.is_of_world = True
     own = world.lancer
     cycles = getattr(world, "cycles", None)
-    if getattr(cycles, "max_bounces", 1024) < 1024:
-        messages.add(
-            f"{who}: its own limit of {cycles.max_bounces} bounces is not supported, the scene's Max Bounces is used",
-            "feature:bounce limit of a lamp",
-        )
     if own.use_cube:
         radiance, outputs = _cube(own, graph, who, messages), ()
     else:

@@ -8,7 +8,14 @@ from ..bindings.enums import Integrator
 from .schedule import CANCELLED, DENOISED_POWER, POWER, SAMPLES, TARGET, TIME
 
 # Shares of light below this are not reported.
-_NOTHING = 5e-5
+NOTHING = 5e-5
+# Limits that the artist sets, by the entry of a render's statistics with the share of the light that each has removed.
+REMOVED = {
+    "error_clipped": "clamping has removed",
+    "error_clipped_direct": "clamping of direct light has removed",
+    "error_cut": "limits of kinds of bounces and of lamps have removed about",
+    "error_no_caustics": "the lack of caustics has removed about",
+}
 
 
 def percent(share):
@@ -51,7 +58,7 @@ def account(session, schedule):
     numbers |= {"denoised": "", "denoised_moved": 0.0}
     numbers |= {f"denoised_error{end}": math.inf for end in ("", "_low", "_high")}
     numbers["error"] = error.error
-    for name in ("low", "high", "cannot_exclude", "clipped", "missing"):
+    for name in ("low", "high", "cannot_exclude", *(name[len("error_") :] for name in REMOVED), "missing"):
         numbers[f"error_{name}"] = getattr(error, name)
     return numbers
 
@@ -124,27 +131,32 @@ def _confident(numbers, name):
 
 def biases(numbers, settings):
     """Yield a sentence for each bias that the error does not include."""
-    if numbers["error_cannot_exclude"] > _NOTHING and math.isfinite(numbers["error_cannot_exclude"]):
+    if numbers["error_cannot_exclude"] > NOTHING and math.isfinite(numbers["error_cannot_exclude"]):
         yield f"light in flashes that no sample has met could add {percent(numbers['error_cannot_exclude'])} to the error"
     if settings.clamp_indirect > 0.0:
         yield f"clamping has removed {percent(numbers['error_clipped'])} of the light: the picture is too dark by this share"
+    for name in ("error_clipped_direct", "error_cut", "error_no_caustics"):
+        if numbers[name] > NOTHING:
+            yield f"{REMOVED[name]} {percent(numbers[name])} of the light: the picture is too dark by this share"
+    if settings.filter_glossy > 0.0:
+        yield f"filter glossy {settings.filter_glossy:g} blurs light behind blurred reflections: how much is not measured"
     if settings.integrator == Integrator.PATH:
         missing = numbers["error_missing"]
         if math.isinf(missing):
             last = "the last bounce finds no less light than the one before"
             yield f"light beyond {settings.max_bounces} bounces is left out, and {last}"
-        elif missing > _NOTHING:
+        elif missing > NOTHING:
             yield f"light beyond {settings.max_bounces} bounces is left out: about {percent(missing)}"
     if numbers["denoised"]:
         yield numbers["denoised"]
-        if numbers["denoised_moved"] > _NOTHING:
+        if numbers["denoised_moved"] > NOTHING:
             moved = percent(numbers["denoised_moved"])
             yield f"denoising alone would move about {moved} of the light; the samples bring it back as they rise"
 
 
 def fields(numbers, settings):
     """Yield (name, text) pairs for the metadata of a file."""
-    for name in ("error", "error_low", "error_high", "error_cannot_exclude", "error_clipped", "error_missing"):
+    for name in ("error", "error_low", "error_high", "error_cannot_exclude", *REMOVED, "error_missing"):
         yield name, f"{numbers[name]:.6g}"
     yield "samples", str(numbers["samples"])
     yield "samples_most", str(numbers["samples_most"])

@@ -56,7 +56,10 @@ def _wanted(scene, cycles):
     yield "seed", cycles.seed
     yield "use_animated_seed", cycles.use_animated_seed
     yield "max_bounces", cycles.max_bounces
+    for kind in ("diffuse", "glossy", "transmission"):
+        yield f"{kind}_bounces", _effective(getattr(cycles, f"{kind}_bounces"), cycles.max_bounces, own)
     yield "transparent_bounces", cycles.transparent_max_bounces
+    yield "filter_glossy", cycles.blur_glossy
     yield "clamp_indirect", cycles.sample_clamp_indirect
     kind, width = filter_of(cycles)
     yield "pixel_filter", kind
@@ -70,6 +73,11 @@ def _wanted(scene, cycles):
     if not denoise.missing():
         yield "use_denoising", cycles.use_denoising
         yield "use_preview_denoising", cycles.use_preview_denoising
+
+
+def _effective(limit, total, own):
+    """Return a limit of one kind of bounces, or no limit where the total ends paths first."""
+    return limit if limit < total else own.bl_rna.properties["diffuse_bounces"].default
 
 
 def _target_error(cycles):

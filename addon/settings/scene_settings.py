@@ -122,6 +122,37 @@ class LancerSceneSettings(bpy.types.PropertyGroup):
         max=1024,
         default=_GIVEN["max_bounces"],
     )
+    diffuse_bounces: IntProperty(
+        name="Diffuse Bounces",
+        description="Largest number of diffuse reflections of a path, below the total. Makes the picture too dark",
+        min=0,
+        soft_max=64,
+        max=1024,
+        default=_GIVEN["diffuse_bounces"],
+    )
+    glossy_bounces: IntProperty(
+        name="Glossy Bounces",
+        description="Largest number of glossy reflections of a path, below the total. Makes the picture too dark",
+        min=0,
+        soft_max=64,
+        max=1024,
+        default=_GIVEN["glossy_bounces"],
+    )
+    transmission_bounces: IntProperty(
+        name="Transmission Bounces",
+        description="Largest number of refractions of a path, below the total. Makes the picture too dark",
+        min=0,
+        soft_max=64,
+        max=1024,
+        default=_GIVEN["transmission_bounces"],
+    )
+    filter_glossy: FloatProperty(
+        name="Filter Glossy",
+        description="Blur glossy surfaces behind blurred reflections, to reduce the noise of caustics. Blurs light; 0 = off",
+        min=0.0,
+        soft_max=10.0,
+        default=_GIVEN["filter_glossy"],
+    )
     contribution_threshold: FloatProperty(
         name="Contribution Threshold",
         description="Classic: do not trace rays that contribute less than this share to their pixel; 0 = trace all",

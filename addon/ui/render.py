@@ -4,8 +4,9 @@ import bpy
 from bl_ui.properties_grease_pencil_common import GreasePencilSimplifyPanel
 
 from ..denoise import view_layer as denoise
+from ..engine import last_statistics
 from ..export.settings import glass_owner
-from ..measure.render_report import percent
+from ..measure.render_report import NOTHING, REMOVED, percent
 from ..operators import measure_quality, measuring, take_over_cycles
 from ..settings import presets
 from . import motion
@@ -16,8 +17,8 @@ _MEASURE = "lancer.measure_quality"
 
 # A note for users of Cycles.
 _REPLACED = (
-    "These settings replace Cycles' bounces and clamping. Filter Glossy and limits for single kinds of bounces are not "
-    "supported. Messages report differences by these settings."
+    "These settings replace Cycles' bounces, Clamp Indirect and Filter Glossy, and leave no light out by default. Messages "
+    "report differences by them, and how much light each limit removes."
 )
 
 _DENOISING = (
@@ -76,6 +77,15 @@ def _draw_forecast(column, context):
         # Panels are narrow.
         for part in line.split("; "):
             sentence(column, context, part)
+
+
+def draw_biases(column, context, *names):
+    """Draw the share of light that limits have removed from the last render, by names in its statistics, where there is any."""
+    numbers = last_statistics.get(context.scene.name, {})
+    for name in names:
+        if numbers.get(name, 0.0) > NOTHING:
+            told = f"{REMOVED[name]} {percent(numbers[name])} of the light of the last render"
+            sentence(column, context, told[0].upper() + told[1:])
 
 
 def draw_measuring(column, scene, operator, doing="Measuring"):
@@ -178,6 +188,11 @@ class LANCER_RENDER_PT_max_bounces(LancerRenderPanel, bpy.types.Panel):
         settings = context.scene.lancer
         column = self._column()
         column.prop(settings, "max_bounces", text="Total")
+        kinds = column.column()
+        kinds.active = settings.integrator == "PATH"
+        for kind in ("diffuse", "glossy", "transmission"):
+            kinds.prop(settings, f"{kind}_bounces", text=kind.capitalize())
+        draw_biases(column, context, "error_cut")
         column.prop(settings, "transparent_bounces", text="Transparent")
 
 
@@ -189,7 +204,23 @@ class LANCER_RENDER_PT_clamping(LancerRenderPanel, bpy.types.Panel):
         settings = context.scene.lancer
         column = self._column()
         column.active = settings.integrator == "PATH"
+        setting(column, "sample_clamp_direct", getattr(context.scene, "cycles", None), text="Direct Light")
         column.prop(settings, "clamp_indirect", text="Indirect Light")
+        draw_biases(column, context, "error_clipped_direct", "error_clipped")
+
+
+class LANCER_RENDER_PT_caustics(LancerRenderPanel, bpy.types.Panel):
+    bl_label = "Caustics"
+    bl_parent_id = "LANCER_RENDER_PT_light_paths"
+
+    def draw(self, context):
+        settings, cycles = context.scene.lancer, getattr(context.scene, "cycles", None)
+        column = self._column()
+        column.active = settings.integrator == "PATH"
+        column.prop(settings, "filter_glossy")
+        setting(column, "caustics_reflective", cycles, text="Reflective")
+        setting(column, "caustics_refractive", cycles, text="Refractive")
+        draw_biases(column, context, "error_no_caustics")
 
 
 class LANCER_RENDER_PT_classic(LancerRenderPanel, bpy.types.Panel):
@@ -275,7 +306,7 @@ class LANCER_RENDER_PT_film(LancerRenderPanel, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context):
-        pass
+        setting(self._column(), "film_exposure", getattr(context.scene, "cycles", None), text="Exposure")
 
 
 class LANCER_RENDER_PT_pixel_filter(LancerRenderPanel, bpy.types.Panel):
@@ -382,6 +413,7 @@ CLASSES = (
     LANCER_RENDER_PT_light_paths,
     LANCER_RENDER_PT_max_bounces,
     LANCER_RENDER_PT_clamping,
+    LANCER_RENDER_PT_caustics,
     LANCER_RENDER_PT_classic,
     LANCER_RENDER_PT_simplify,
     LANCER_RENDER_PT_simplify_viewport,

@@ -279,8 +279,15 @@ lancer_settings Records::settings() {
   settings.max_bounces = settings.integrator == LANCER_CLASSIC ? bytes_.below(4) : bytes_.below(12);
   if (bytes_.rarely(2))
     settings.max_bounces = 1025;
+  for (uint32_t *limit : {&settings.diffuse_bounces, &settings.glossy_bounces, &settings.transmission_bounces})
+    *limit = bytes_.rarely(20) ? bytes_.below(4) : 1024;
   settings.contribution_threshold = bytes_.number(0.0f, 0.0f, 1.0f);
   settings.clamp_indirect = bytes_.number(0.0f, 0.0f, 10.0f);
+  settings.clamp_direct = bytes_.number(0.0f, 0.0f, 10.0f);
+  settings.no_reflections = flag();
+  settings.no_refractions = flag();
+  settings.filter_glossy = bytes_.number(0.0f, 0.0f, 4.0f);
+  settings.exposure = bytes_.number(1.0f, 0.0f, 4.0f);
   settings.pixel_filter = bytes_.choice(2);
   settings.filter_width = bytes_.number(1.5f, 0.1f, 4.0f);
   settings.film_transparent = flag();

@@ -883,8 +883,9 @@ typedef struct lancer_light {
   float ambient_color[3]; /* CLASSIC: factors of emission for the ambient, diffuse and specular sums; 1, 1, 1 = one colour */
   float diffuse_color[3];
   float specular_color[3];
-  uint64_t unlit_sets; /* light linking: bits of the sets of receivers that its light does not reach */
-  uint64_t clear_sets; /* bits of the sets of blockers that its light passes */
+  uint32_t lit_surfaces; /* PATH: light samples on the first surfaces of a path alone, so many of them; 0 = on all */
+  uint64_t unlit_sets;   /* light linking: bits of the sets of receivers that its light does not reach */
+  uint64_t clear_sets;   /* bits of the sets of blockers that its light passes */
 } lancer_light;
 
 /* ---- scene: create, fill, commit, destroy ------------------------------------------------------------------------ */
@@ -935,7 +936,7 @@ typedef struct lancer_world {
                                 8192 x 4096 evaluations */
   uint32_t light_group;      /* 1 ... settings.light_groups; 0 = none */
   uint32_t output_count;     /* at most LANCER_MOST_NODES */
-  uint32_t reserved;
+  uint32_t lit_surfaces;     /* as of a light */
 } lancer_world;
 /* The world is black until set. */
 LANCER_API lancer_status lancer_scene_set_world(lancer_scene scene, const lancer_world *world);
@@ -1111,20 +1112,30 @@ enum lancer_pass_kind {
 /* How a scene is rendered. Each comment begins with kind, default and, where there is one, the largest value: a choice of an
  * enum; a number; an amount, finite and not negative; a width, finite and positive; a switch, 0 or 1; bits. */
 typedef struct lancer_settings {
-  uint32_t integrator;          /* [choice 0 2] LANCER_PATH ... */
-  uint32_t samples;             /* [number 256] planned per pixel; CLASSIC with 1 uses the centre of pixel, lens and light */
-  uint32_t seed;                /* [number 0] */
-  uint32_t max_bounces;         /* [number 12 1024] PATH: scattering events after the first; CLASSIC: recursion depth, at most
-                                   LANCER_DEEPEST_RECURSION */
-  float contribution_threshold; /* [amount 0] CLASSIC: a ray is traced only if its throughput exceeds this in some channel */
-  float clamp_indirect;         /* [amount 0] PATH: largest channel of a sample's indirect light; 0 = off */
-  uint32_t split_lights;        /* [number 1 16] PATH: number of lights sampled per sample at its first surface with a lobe
-                                   that is not a single direction. 0, as split_paths: chosen by rendering a few pixels before
-                                   the first sample, if at least 16 samples are planned */
-  uint32_t split_paths;         /* [number 1 16] PATH: number of branches that continue from that surface */
-  uint32_t pixel_filter;        /* [choice 0 1] LANCER_FILTER_* */
-  float filter_width;           /* [width 1] full width in pixels */
-  uint32_t film_transparent;    /* [switch 0] the environment has alpha 0 */
+  uint32_t integrator;      /* [choice 0 2] LANCER_PATH ... */
+  uint32_t samples;         /* [number 256] planned per pixel; CLASSIC with 1 uses the centre of pixel, lens and light */
+  uint32_t seed;            /* [number 0] */
+  uint32_t max_bounces;     /* [number 12 1024] PATH: scattering events after the first; CLASSIC: recursion depth, at most
+                               LANCER_DEEPEST_RECURSION */
+  uint32_t diffuse_bounces; /* [number 1024 1024] PATH: as max_bounces, of scattering events by kind: diffuse reflections, */
+  uint32_t glossy_bounces;  /* [number 1024 1024] other reflections, */
+  uint32_t transmission_bounces; /* [number 1024 1024] and transmissions. 255 and more are no limit */
+  float contribution_threshold;  /* [amount 0] CLASSIC: a ray is traced only if its throughput exceeds this in some channel */
+  float clamp_indirect;          /* [amount 0] PATH: largest channel of a sample's indirect light; 0 = off */
+  float clamp_direct;        /* [amount 0] PATH: largest mean of the channels of each light sample, and of each light that a ray
+                                runs into, that was scattered at most once; 0 = off */
+  uint32_t no_reflections;   /* [switch 0] PATH: rays from diffuse lobes meet no lobes that mirror, */
+  uint32_t no_refractions;   /* [switch 0] and none that refract: no caustics */
+  float filter_glossy;       /* [amount 0] PATH: after scatterings of a density p below this, glossy lobes have at least the
+                                alpha sqrt(1 - p / filter_glossy) / 2 */
+  float exposure;            /* [amount 1] factor of all light in the film */
+  uint32_t split_lights;     /* [number 1 16] PATH: number of lights sampled per sample at its first surface with a lobe
+                                that is not a single direction. 0, as split_paths: chosen by rendering a few pixels before
+                                the first sample, if at least 16 samples are planned */
+  uint32_t split_paths;      /* [number 1 16] PATH: number of branches that continue from that surface */
+  uint32_t pixel_filter;     /* [choice 0 1] LANCER_FILTER_* */
+  float filter_width;        /* [width 1] full width in pixels */
+  uint32_t film_transparent; /* [switch 0] the environment has alpha 0 */
   uint32_t transparent_glass;   /* [switch 0] the environment has alpha 0 also through glass of at most glass_roughness */
   float glass_roughness;        /* [amount 0] alpha */
   uint32_t transparent_bounces; /* [number 8 1024] surfaces that a ray may pass straight through; the next one contributes only
@@ -1213,6 +1224,9 @@ typedef struct lancer_error {
   double low, high;       /* confidence interval of the error at the given confidence */
   double cannot_exclude;  /* bound at 95 % on the error from flashes that no sample has hit: the rule of three */
   double clipped;         /* share of the picture's light removed by clamp_indirect */
+  double clipped_direct;  /* the same of clamp_direct */
+  double cut;             /* estimated share of the light beyond the limits of kinds of bounces and of lamps */
+  double no_caustics;     /* estimated share of the caustics that no_reflections and no_refractions leave out */
   double missing;         /* PATH: estimated share of light beyond max_bounces, extrapolated from the last bounces; else 0 */
   double planned_samples; /* total pixel samples planned by the last lancer_session_refine */
   uint32_t least_samples, most_samples; /* per pixel */
@@ -1256,9 +1270,8 @@ LANCER_API lancer_status lancer_combine_denoised(uint32_t width, uint32_t height
  *   char[8] "LANCERPT", u32 format (1), u32 LANCER_ABI_VERSION, u64 size of the part in bytes
  *   lancer_part
  *   u64[4] camera rays, bounce rays, shadow rays, vertices
- *   i64[3][32] luminance that clamping has removed, and that of the last bounce and the one before: digits of base 256, the
- *     lowest one in units of 2^-150
- *   for each tile, by rising number:
+ *   i64[6][32] luminance that clamp_indirect, clamp_direct, limits of bounces and the lack of caustics have removed, and that
+ * of the last bounce and the one before: digits of base 256, the lowest one in units of 2^-150 for each tile, by rising number:
  *     u32 tile, u32 n, u32 d, u32 m (1 if the tile has sample 0, else 0)
  *     n times u32 start, u32 level: sums of the samples start ... start + 2^level - 1, by rising start, a multiple of 2^level
  *     n times f64[pixels][channels] sums of the summed passes in order of pass, as film_passes.cpp lists them, then of light

@@ -2,7 +2,7 @@
 
 import fnmatch
 import importlib
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import bpy
 
@@ -50,6 +50,7 @@ SUBJECTS = (
     "subdivisions",
     "subdivisions_inputs",
     "films",
+    "light_paths",
     "passes_light",
     "passes_data",
     "passes_chosen",
@@ -79,7 +80,8 @@ class Case:
     needs: object = None  # needs() returns "" or a sentence that names the missing requirement
     sum_of_passes: bool = False  # compare the sum of Lancer's passes with its Combined
     announced: str = ""  # words that one of Lancer's messages must contain; they excuse no difference
-    exposure: float = 1.0  # exposure of Cycles' film; Lancer has none, so its picture is scaled here
+    exposure: float = 1.0  # of the film
+    limited: dict = field(default_factory=dict)  # settings of Cycles that limit light; Lancer gets the same
     quick: bool = False  # belongs to the subset of `make test`
 
     @property

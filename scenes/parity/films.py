@@ -39,9 +39,9 @@ def film_transparent_glass_rough(scene):
     scene.cycles.film_transparent_roughness = 0.1
 
 
-@case(announced="film exposure", exposure=2.0)
+@case(exposure=2.0)
 def film_exposure(scene):
-    """Cycles' exposure of the film scales the picture. Lancer reports that it ignores it; otherwise the pictures agree."""
+    """The exposure of the film scales the picture."""
     _things(scene)
 
 

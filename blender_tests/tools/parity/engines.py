@@ -93,6 +93,8 @@ def _set_cycles(cycles, case, samples, seed):
     cycles.max_bounces = case.bounces
     for kind in ("diffuse", "glossy", "transmission"):
         setattr(cycles, kind + "_bounces", case.bounces)
+    for name, value in case.limited.items():
+        setattr(cycles, name, value)
     cycles.volume_bounces = 0
     cycles.transparent_max_bounces = case.transparent_bounces
     cycles.min_light_bounces = cycles.min_transparent_bounces = 0
@@ -111,9 +113,16 @@ def unbias_lancer(lancer, samples, seed):
         lancer.use_denoising = False
 
 
+# Names of Cycles' settings in Lancer where they differ.
+_OF_LANCER = {"blur_glossy": "filter_glossy", "sample_clamp_indirect": "clamp_indirect"}
+
+
 def _set_lancer(lancer, case, samples, seed):
     unbias_lancer(lancer, samples, seed)
     lancer.max_bounces = case.bounces
+    for name, value in case.limited.items():
+        if hasattr(lancer, _OF_LANCER.get(name, name)):
+            setattr(lancer, _OF_LANCER.get(name, name), value)
     lancer.pixel_filter = "BLACKMAN_HARRIS" if case.filter_width else "BOX"
     lancer.filter_width = case.filter_width or 1.0
     if hasattr(lancer, "transparent_bounces"):
@@ -149,7 +158,5 @@ def render(scene, engine, case, samples, seed, folder):
         if name == "Combined":
             result["Alpha"] = picture[..., 3:4]
             picture = picture[..., :3]
-            if engine == "LANCER":
-                picture = case.exposure * picture
         result[name] = picture
     return result

@@ -86,6 +86,9 @@ template <class F> struct Bsdf {
   bool walks = false;
   B after_diffuse = uniform<F>(false);
   F pixel{0.0f};
+  // Lanes whose paths meet no lobes that mirror; read only where the integrator limits caustics.
+  bool limits_caustics = false;
+  B no_reflections = uniform<F>(false);
   // Uninitialised: only the first frame_count and count entries exist.
   union {
     Frame<F> frames[kMaxFrames];

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "bsdf/cached_plans.h"
+#include "bsdf/limited_lobes.h"
 #include "bsdf/principled.h"
 #include "scene/material.h"
 
@@ -233,6 +234,7 @@ template <class F> struct AskingPaths {
   MaskOf<F> dimmed = uniform<F>(false);
   F pixel{0.0f};
   WordOf<F> key{0u};
+  LobeLimits<F> limits{};
 };
 
 // Adds all lobes of the material as seen from wo. out_ns, out_ng: of the surface, outwards.
@@ -255,10 +257,14 @@ LANCER_LANE void find_lobes(const MaterialView *const *materials, const Values &
   bsdf.after_diffuse = paths.after_diffuse;
   bsdf.pixel = paths.pixel;
   bsdf.key = paths.key;
+  bsdf.limits_caustics = paths.limits.caustics;
+  bsdf.no_reflections = paths.limits.no_reflections;
   for (size_t i = 0; i < material.lobes.size() && finds_lobes; ++i)
     add_described<F>(materials, i, values, hole, bsdf);
   if (paths.leaving)
     leave_below(bsdf, material.lobes.empty() ? Rules::Blender45 : material.lobes.front().rules, paths.dimmed);
+  if (paths.limits.caustics || paths.limits.blurs)
+    limit_lobes(bsdf, paths.limits);
   bsdf.complete();
 }
 

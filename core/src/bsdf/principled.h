@@ -244,6 +244,8 @@ void add_layers(Bsdf<F> &bsdf, const LobeInputs<F> &inputs, const PrincipledInpu
       }
       const F cos_o = bsdf.wo_local[frame].z;
       V color = weighted(row.layer == PrincipledLayer::Gloss ? weight : share * weight);
+      if (bsdf.limits_caustics && row.layer != PrincipledLayer::Glass)
+        color = select(bsdf.no_reflections, none, color);
       if (row.layer == PrincipledLayer::Glass && any(in_sheet)) {
         add_glass_sheet(bsdf, sheet_facets(in, frame), select(in_sheet, color, none), in, cos_in(bsdf, frame));
         color = select(in_sheet, none, color);

@@ -149,6 +149,7 @@ Light place_light(const LightDescription &from, const Normalisation &normalisati
   light.no_shadow = from.no_shadow;
   light.light_group = from.light_group;
   light.links = from.links;
+  light.lit_surfaces = from.lit_surfaces;
   light.classic = {from.falloff,       double(from.falloff_radius) * scale, scale, from.ambient_color, from.diffuse_color,
                    from.specular_color};
   return light;

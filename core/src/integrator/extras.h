@@ -48,6 +48,13 @@ struct Extras {
     for (int i = 0; i < 3; ++i)
       to[i] += light[i];
   }
+  // Multiplies the light of the groups; outputs are no light.
+  void expose(const ExtraLayout &layout, float exposure) {
+    const uint32_t light = 3 * layout.groups;
+    for (size_t first = 0; light > 0 && first < channels.size(); first += layout.channels())
+      for (uint32_t i = 0; i < light; ++i)
+        channels[first + i] *= exposure;
+  }
 };
 
 } // namespace lancer

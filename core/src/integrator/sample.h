@@ -9,11 +9,13 @@
 #include "scene/camera.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace lancer {
@@ -72,6 +74,10 @@ enum LightPass : uint32_t {
   kLightPasses = 12
 };
 
+// Paths that measure what limits remove: their light goes into no film. Bounces: of a path that a limit of kinds ends;
+// Caustics: of the lobes that a path lacks.
+enum class Ghost : uint8_t { None = 0, Bounces, Caustics };
+
 // The contribution of one sample to the film. All members are floats; those that the film sums are in the order of their
 // passes.
 struct SampleResult {
@@ -98,6 +104,14 @@ struct SampleResult {
   }
 };
 
+// Multiplies all light of a result, but not the colours and the occlusion of passes.
+inline void expose(SampleResult &result, float exposure, bool with_light) {
+  result.radiance *= exposure;
+  for (uint32_t i = 0; i < kLightPasses && with_light; ++i)
+    if (i != kLightOcclusion && (i < kLightComponents || (i - kLightComponents) % 3 != 2))
+      result.light[i] *= exposure;
+}
+
 struct RayCounts {
   uint64_t camera = 0, bounce = 0, shadow = 0;
 
@@ -117,8 +131,15 @@ struct RayCounts {
 
 // Luminance that clamping removes, and that of the last bounces, summed over samples.
 struct Energy {
-  ExactSum clipped;           // by clamping
-  ExactSum last, before_last; // found by the last bounce that is followed, and by the one before
+  ExactSum clipped, clipped_direct; // by clamping of indirect and of direct light
+  ExactSum cut, no_caustics;        // by limits of kinds of bounces and of lamps, and by the lack of caustics: see Ghost
+  ExactSum last, before_last;       // found by the last bounce that is followed, and by the one before
+
+  // The sums in the order of lancer.h.
+  static constexpr uint32_t kSums = 6;
+  template <class Of> static std::array<decltype(&std::declval<Of &>().clipped), kSums> sums(Of &energy) {
+    return {&energy.clipped, &energy.clipped_direct, &energy.cut, &energy.no_caustics, &energy.last, &energy.before_last};
+  }
 
   // Returns an estimate of the light of all bounces beyond the last: the sum of a geometric series with the ratio of the last
   // two bounces. Once indirect light has spread, it falls off at least as fast as this series. Returns infinity if the last
@@ -130,18 +151,16 @@ struct Energy {
       return 0.0;
     return found < before ? found * found / (before - found) : std::numeric_limits<double>::infinity();
   }
-  // Ignores values that are not finite, because the film drops their sample.
-  void clip(float light) { clipped += std::isfinite(light) ? std::abs(light) : 0.0f; }
+  // Adds removed light to a sum. Ignores values that are not finite, because the film drops their sample.
+  static void remove(ExactSum &sum, float light) { sum += std::isfinite(light) ? std::abs(light) : 0.0f; }
   Energy &operator+=(const Energy &other) {
-    clipped += other.clipped;
-    last += other.last;
-    before_last += other.before_last;
+    for (uint32_t i = 0; i < kSums; ++i)
+      *sums(*this)[i] += *sums(other)[i];
     return *this;
   }
   Energy &operator-=(const Energy &other) {
-    clipped -= other.clipped;
-    last -= other.last;
-    before_last -= other.before_last;
+    for (uint32_t i = 0; i < kSums; ++i)
+      *sums(*this)[i] -= *sums(other)[i];
     return *this;
   }
 };

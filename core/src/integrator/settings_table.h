@@ -23,8 +23,16 @@ enum class Pass : uint32_t {
   X(Number, samples, 256u, 0xffffffffu)                                                                                        \
   X(Number, seed, 0u, 0xffffffffu)                                                                                             \
   X(Number, max_bounces, 12u, 1024u)                                                                                           \
+  X(Number, diffuse_bounces, 1024u, 1024u)                                                                                     \
+  X(Number, glossy_bounces, 1024u, 1024u)                                                                                      \
+  X(Number, transmission_bounces, 1024u, 1024u)                                                                                \
   X(Amount, contribution_threshold, 0.0f, 0xffffffffu)                                                                         \
   X(Amount, clamp_indirect, 0.0f, 0xffffffffu)                                                                                 \
+  X(Amount, clamp_direct, 0.0f, 0xffffffffu)                                                                                   \
+  X(Switch, no_reflections, false, 0xffffffffu)                                                                                \
+  X(Switch, no_refractions, false, 0xffffffffu)                                                                                \
+  X(Amount, filter_glossy, 0.0f, 0xffffffffu)                                                                                  \
+  X(Amount, exposure, 1.0f, 0xffffffffu)                                                                                       \
   X(Number, split_lights, 1u, 16u)                                                                                             \
   X(Number, split_paths, 1u, 16u)                                                                                              \
   X(Choice, pixel_filter, 0u, 1u)                                                                                              \

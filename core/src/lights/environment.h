@@ -48,6 +48,7 @@ public:
   const glm::vec3 &constant() const { return constant_; }
   uint32_t hidden_from() const { return hidden_from_; }
   uint32_t light_group() const { return world_.light_group; }
+  uint32_t lit_surfaces() const { return world_.lit_surfaces; }
   // Largest angle over which images with mipmaps are averaged for other rays than the camera's: as in Cycles, a cell of the map
   // that Cycles samples.
   float finest() const { return finest_; }

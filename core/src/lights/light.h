@@ -46,8 +46,9 @@ struct Light {
   bool no_shadow = false;
   uint32_t light_group = 0; // 0 = none
   LightLinks links;
-  uint32_t shader = kNone; // index of LampShaders: its strength multiplies the light; kNone: 1
-  double level = 1.0;      // mean strength, for the choice of a light
+  uint32_t lit_surfaces = 0; // 0: all
+  uint32_t shader = kNone;   // index of LampShaders: its strength multiplies the light; kNone: 1
+  double level = 1.0;        // mean strength, for the choice of a light
   ClassicLight classic;
 };
 

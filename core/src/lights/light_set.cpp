@@ -46,6 +46,13 @@ LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, siz
     switches_.push_back(emitter.hidden_from());
   if (environment_.is_light())
     switches_.push_back(environment_.hidden_from());
+  for (const Light &light : lamps_)
+    lit_surfaces_.push_back(light.lit_surfaces);
+  lit_surfaces_.resize(size(), 0);
+  if (environment_.is_light())
+    lit_surfaces_.back() = environment_.lit_surfaces();
+  if (std::ranges::all_of(lit_surfaces_, [](uint32_t lit) { return lit == 0; }))
+    lit_surfaces_.clear();
   std::vector<DescribedLight> described;
   described.reserve(size());
   for (uint32_t i = 0; i < lamps_.size(); ++i)

@@ -51,6 +51,11 @@ public:
                                       : environment_.light_group();
   }
 
+  // Whether a light gives no light samples after so many scatterings.
+  bool is_spent(uint32_t light, uint32_t scatterings) const {
+    return !lit_surfaces_.empty() && lit_surfaces_[light] != 0 && scatterings >= lit_surfaces_[light];
+  }
+
   // The choice of a light is one in the binary tree, then one within the light that this step returns.
   const BinaryLightTree &binary_tree() const { return trees_.few; }
   // In the binary tree, the light number size() represents all lights of wide_tree().
@@ -99,6 +104,7 @@ private:
   LightTrees trees_;
   std::vector<LightLinks> links_; // of all lights; empty where none is linked
   bool passes_blockers_ = false;
+  std::vector<uint32_t> lit_surfaces_; // of all lights; empty where each lights all surfaces
   // The trees of sets of receivers that some light does not reach, and their numbers by set; empty where every light reaches
   // all.
   std::vector<LightTrees> linked_trees_;

@@ -1,5 +1,6 @@
 #include "render/coverage.h"
 
+#include "integrator/stages/light_passes.h"
 #include "lancer.h"
 
 #include <limits>
@@ -221,6 +222,10 @@ Background find_background(const Scene &scene, const Camera &camera, const Integ
   const auto integrator = make_integrator(scene, camera, settings);
   integrator->run(std::span(&address, 1), std::span(&background.sample, 1), nullptr);
   background.extras = integrator->extras();
+  if (settings.exposure != 1.0f) {
+    expose(background.sample, settings.exposure, LightPasses(settings).wanted());
+    background.extras.expose(settings.extras(), settings.exposure);
+  }
   // The film drops and counts each sample that is not finite, so a background that is not finite is traced.
   return film.finite(background.sample, background.extras.channels.data()) ? background : Background();
 }

@@ -41,7 +41,7 @@ private:
 bool is_first(const Film::Tile &tile) { return !tile.nodes.empty() && tile.nodes.front().start == 0; }
 
 void write_energy(Writer &writer, const Energy &energy) {
-  for (const ExactSum *sum : {&energy.clipped, &energy.last, &energy.before_last})
+  for (const ExactSum *sum : Energy::sums(energy))
     for (const int64_t digit : sum->digits())
       writer.number(digit);
 }
@@ -50,7 +50,7 @@ void write_energy(Writer &writer, const Energy &energy) {
 
 uint64_t Identity::hash() const {
   static_assert(sizeof(lancer_part) == 32 + 16 + 16 + sizeof(lancer_camera) + sizeof(lancer_settings) + 20, "no padding");
-  static_assert(sizeof(lancer_settings) == sizeof(uint32_t) * 31, "no padding");
+  static_assert(sizeof(lancer_settings) == sizeof(uint32_t) * 39, "no padding");
   static_assert(sizeof(lancer_camera) == 12 * sizeof(double) + 8 * sizeof(uint32_t) + 18 * sizeof(double), "no padding");
   lancer_settings fixed = settings;
 #define LANCER_FIX(kind, name, given, most)                                                                                    \

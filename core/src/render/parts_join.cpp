@@ -224,7 +224,7 @@ bool are_numbers(const Totals &totals) {
   for (const uint64_t count : {totals.rays.camera, totals.rays.bounce, totals.rays.shadow, totals.vertices})
     if (count > uint64_t(kMostTotal))
       return false;
-  for (const ExactSum *sum : {&totals.energy.clipped, &totals.energy.last, &totals.energy.before_last})
+  for (const ExactSum *sum : Energy::sums(totals.energy))
     if (const int64_t rest = sum->digits().back(); rest < -kMostTotal || rest > kMostTotal)
       return false;
   return true;
@@ -235,15 +235,19 @@ Totals read_totals(Reader &reader) {
   for (uint64_t *number : {&totals.rays.camera, &totals.rays.bounce, &totals.rays.shadow, &totals.vertices})
     *number = reader.number<uint64_t>();
   bool are_digits = true;
-  for (ExactSum *sum : {&totals.energy.clipped, &totals.energy.last, &totals.energy.before_last}) {
+  for (ExactSum *sum : Energy::sums(totals.energy)) {
     std::array<int64_t, ExactSum::kDigits> digits;
     for (int64_t &digit : digits)
       digit = reader.number<int64_t>();
     are_digits &= std::all_of(digits.begin(), digits.end() - 1, [](int64_t digit) { return digit >= 0 && digit < 256; });
     *sum = ExactSum(digits);
   }
-  // Clamping removes absolute values.
-  if (!are_digits || !are_numbers(totals) || totals.energy.clipped.digits().back() < 0)
+  // Removed light is counted by absolute values.
+  const Energy &energy = totals.energy;
+  const bool below_zero =
+      std::ranges::any_of(std::array{&energy.clipped, &energy.clipped_direct, &energy.cut, &energy.no_caustics},
+                          [](const ExactSum *sum) { return sum->digits().back() < 0; });
+  if (!are_digits || !are_numbers(totals) || below_zero)
     refuse_damaged("its sums of rays or light are no numbers");
   return totals;
 }

@@ -1,5 +1,6 @@
 #include "render/session.h"
 
+#include "integrator/stages/light_passes.h"
 #include "render/picture_error.h"
 #include "scene/fill.h"
 #include "scene/messages.h"
@@ -320,6 +321,8 @@ SampleResult Session::replay(const SampleAddress &address, std::vector<PathVerte
   const auto integrator = make_integrator(*scene_, camera_, settings);
   SampleResult result;
   integrator->run(std::span(&address, 1), std::span(&result, 1), &vertices);
+  if (settings.exposure != 1.0f)
+    expose(result, settings.exposure, LightPasses(settings).wanted());
   return result;
 }
 
@@ -337,8 +340,14 @@ SessionError Session::error(double confidence) const {
   const Energy energy = totals().energy;
   // Energy includes samples that a stopped range has dropped.
   light *= double(counted_samples_) / std::max(samples, 1.0);
+  // Energy is that of the light before the film's exposure.
+  light /= double(std::max(settings_.exposure, std::numeric_limits<float>::min()));
   if (light > 0.0) {
-    result.clipped = energy.clipped.value() / (light + energy.clipped.value());
+    const auto share = [&](const ExactSum &removed) { return removed.value() / (light + removed.value()); };
+    result.clipped = share(energy.clipped);
+    result.clipped_direct = share(energy.clipped_direct);
+    result.cut = share(energy.cut);
+    result.no_caustics = share(energy.no_caustics);
     result.missing = energy.beyond() / light;
   }
   result.planned_samples = planned_samples_;

@@ -1,5 +1,7 @@
 #include "render/tile_worker.h"
 
+#include "integrator/stages/light_passes.h"
+
 #include <algorithm>
 #include <chrono>
 
@@ -26,7 +28,8 @@ SampleResult place_of(const SampleResult &result) {
 } // namespace
 
 TileWorker::TileWorker(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
-    : settings_(settings), integrator_(make_integrator(scene, camera, settings)), layout_(settings.extras()) {}
+    : settings_(settings), with_light_(LightPasses(settings).wanted()), integrator_(make_integrator(scene, camera, settings)),
+      layout_(settings.extras()) {}
 
 void TileWorker::render(Film &film, Film::Tile &tile, uint32_t end, const Background &background,
                         const std::function<void(uint64_t samples)> &count) {
@@ -90,6 +93,11 @@ void TileWorker::render_batch(const Film::Tile &tile, uint32_t samples) {
       matte.sample += uint32_t(begin);
       extras_.mattes.push_back(matte);
     }
+  }
+  if (settings_.exposure != 1.0f) {
+    for (SampleResult &result : results_)
+      expose(result, settings_.exposure, with_light_);
+    extras_.expose(layout_, settings_.exposure);
   }
 }
 

@@ -34,6 +34,7 @@ private:
   void publish();
 
   const IntegratorSettings &settings_;
+  bool with_light_; // samples have parts of the light
   std::unique_ptr<Integrator> integrator_;
   std::vector<uint32_t> covered_; // pixels of the tile
   std::vector<SampleAddress> addresses_;

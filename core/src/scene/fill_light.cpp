@@ -119,6 +119,7 @@ LightDescription read_light(const lancer_light &source, size_t number, Images im
     light.hidden_from = source.hidden_from;
     light.no_shadow = source.no_shadow != 0;
     light.links = {source.unlit_sets, source.clear_sets};
+    light.lit_surfaces = source.lit_surfaces;
     light.falloff = static_cast<Falloff>(source.falloff);
     light.falloff_radius = reader.read("falloff radius", source.falloff_radius, 0.0f, kBrightest);
     light.ambient_color = reader.read("ambient colour", source.ambient_color);
@@ -162,6 +163,7 @@ World read_world(const lancer_world &source, Images images) {
   world.light_group = source.light_group;
   world.outputs = read_outputs("world", source.outputs, source.output_count, world.program);
   world.output_nodes = schedule_of(world.outputs, world.program);
+  world.lit_surfaces = source.lit_surfaces;
   return world;
 }
 

@@ -36,6 +36,7 @@ struct LightDescription {
   bool no_shadow = false;
   uint32_t light_group = 0; // 0 = none
   LightLinks links;
+  uint32_t lit_surfaces = 0; // 0: all
   // CLASSIC only.
   Falloff falloff = Falloff::Physical;
   float falloff_radius = 0.0f;
@@ -49,6 +50,7 @@ struct WorldView {
   ScheduleView schedule;            // of radiance
   uint32_t hidden_from = 0;         // RayKind bits
   uint32_t map_resolution = 0;      // 0 = by its images
+  uint32_t lit_surfaces = 0;        // 0: all
   std::optional<glm::vec3> ambient; // replaces the mean radiance for Ka
   uint32_t light_group = 0;         // 0 = none
   std::span<const Output> outputs;
@@ -64,6 +66,7 @@ struct World {
   Schedule schedule;
   uint32_t hidden_from = 0;
   uint32_t map_resolution = 0;
+  uint32_t lit_surfaces = 0;
   std::optional<glm::vec3> ambient;
   uint32_t light_group = 0;
   std::vector<Output> outputs;
@@ -72,7 +75,7 @@ struct World {
   bool varies() const { return radiance.varies(); }
   // Valid until the world changes.
   operator WorldView() const {
-    return {program, radiance, schedule, hidden_from, map_resolution, ambient, light_group, outputs, output_nodes};
+    return {program, radiance, schedule, hidden_from, map_resolution, lit_surfaces, ambient, light_group, outputs, output_nodes};
   }
 };
 

@@ -72,6 +72,8 @@ void PathIntegrator::shade() {
   add_lamps();
   if (linked_)
     add_linked_lights();
+  if (haunted_)
+    send_ghosts();
   film_.count_occluded(queue_.paths, queue_.rays, hits_, occlusion_);
   missed_.clear();
   queues_.begin();
@@ -111,6 +113,34 @@ void PathIntegrator::add_lamps() {
     const Path &path = queue_.paths[met.ray];
     if (path.shows_light(scene_.lights.hidden_from(met.light)))
       film_.add(path, path.beta * met.radiance * met.weight, false, scene_.lights.lamps()[met.light].light_group);
+  }
+}
+
+namespace {
+
+// One of so many paths that a limit changes sends a ghost.
+constexpr uint32_t kPathsOfGhost = 16;
+
+} // namespace
+
+// Adds copies of some paths at the surfaces where limits change them, which go on without the limits.
+void PathIntegrator::send_ghosts() {
+  for (size_t i = 0, count = queue_.paths.size(); i < count; ++i) {
+    const Path &path = queue_.paths[i];
+    if (!hits_[i].valid() || path.is_spent(settings_))
+      continue;
+    const bool over = path.is_over_limit(settings_);
+    if (!over && !(path.lacks_caustics() && (settings_.no_reflections || settings_.no_refractions)))
+      continue;
+    constexpr uint32_t kOther = 0x9e3779b9; // numbers apart from those of estimates
+    if (hash_combine(path.estimates_key(), kOther) % kPathsOfGhost != 0)
+      continue;
+    Path ghost = path;
+    ghost.haunt(over ? Ghost::Bounces : Ghost::Caustics, float(kPathsOfGhost));
+    queue_.paths.push_back(ghost);
+    queue_.rays.push_back(Ray(queue_.rays[i]));
+    queue_.from.push_back(Scattering(queue_.from[i]));
+    hits_.push_back(Hit(hits_[i]));
   }
 }
 
@@ -162,7 +192,7 @@ void PathIntegrator::add_environment() {
 void PathIntegrator::put_in_lane(size_t number, const MaterialView &material) {
   const Path &path = queue_.paths[number];
   const Hit &hit = hits_[number];
-  const bool ends = path.last || path.scatterings > settings_.max_bounces;
+  const bool ends = path.is_spent(settings_) || path.is_over_limit(settings_);
   if (ends && !film_.reads_end(path) && !material.emits() && !material.is_transparent() &&
       !scene_.geometry.instances[hit.instance].holdout)
     return;
@@ -171,6 +201,9 @@ void PathIntegrator::put_in_lane(size_t number, const MaterialView &material) {
     const double way = path.length + hit.t * glm::length(queue_.rays[number].d);
     surface_.place_path(lane, path.after_diffuse, path.leaving, path.dimmed, surface_.pixel_width(way));
   }
+  if (surface_.limits())
+    surface_.limit(lane, path.lacks_caustics(), path.fresh && path.ghost == Ghost::Caustics,
+                   path.least_alpha(settings_.filter_glossy));
   if (material.estimates)
     surface_.set_key(lane, path.estimates_key());
   path_[lane] = number;
@@ -233,7 +266,7 @@ void PathIntegrator::cut_holdouts() {
 // Adds the light that a surface emits, weighted against light samples, and its denoising guides.
 void PathIntegrator::add_emission(uint32_t lane) {
   const Path &path = path_of(lane);
-  if (path.leaving)
+  if (path.leaving || path.fresh)
     return;
   const glm::vec3 emission = surface_.emission(lane);
   if (emission != glm::vec3(0.0f))
@@ -291,8 +324,12 @@ LightPath<float> PathIntegrator::asking_path(uint32_t lane) const {
 // Queues a lane's light sample with its shadow ray.
 void PathIntegrator::send_shadow(uint32_t lane) {
   const Path &path = path_of(lane);
-  const WaitingLight waiting = film_.waiting(path, light_.lit().share, lane, light_.chosen(lane));
+  WaitingLight waiting = film_.waiting(path, light_.lit().share, lane, light_.chosen(lane));
+  waiting.parts = float(lights_[lane]) * float(path.sharers);
   const glm::vec3 contribution = get(light_.lit().contribution, lane);
+  // A limit of a lamp leaves its light samples out.
+  if (scene_.lights.is_spent(light_.chosen(lane), path.scatterings))
+    waiting.ghost = Ghost::Bounces;
   if (scene_.lights.no_shadow(light_.chosen(lane)))
     return shadow_.push_lit(waiting, contribution);
   Ray &ray = shadow_.push(waiting, contribution, path.passed_through, scene_.lights.links(light_.chosen(lane)));

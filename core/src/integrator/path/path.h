@@ -27,8 +27,9 @@ public:
   PathIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
       : scene_(scene), settings_(settings), spread_at_eye_(camera), width_at_eye_(PixelCone(camera).base),
         camera_(camera, scene.motion, settings), film_(scene, camera, settings), hit_(scene, camera), met_(scene, camera),
-        queues_(scene), textures_(scene), surface_(scene, camera, settings), light_(scene, &camera),
-        occlusion_(scene, settings), shadow_(scene, camera, settings), last_bounces_(settings.max_bounces) {
+        haunted_(changes_paths(settings)), queues_(scene), textures_(scene), surface_(scene, camera, settings),
+        light_(scene, &camera), occlusion_(scene, settings), shadow_(scene, camera, settings),
+        last_bounces_(settings.max_bounces) {
     if (std::ranges::any_of(scene.materials, [](const MaterialView &material) { return material.program.looks_around; }))
       surface_.look_by(node_rays_.emplace(scene).functions());
     if (scene.lights.passes_blockers())
@@ -65,12 +66,19 @@ private:
     }
   };
 
+  // Whether limits of kinds of bounces, or of caustics, change paths.
+  static bool changes_paths(const IntegratorSettings &settings) {
+    const uint32_t least = std::min({settings.diffuse_bounces, settings.glossy_bounces, settings.transmission_bounces});
+    return least < settings.max_bounces || settings.no_reflections || settings.no_refractions;
+  }
+
   void start(std::span<const SampleAddress> addresses, std::span<SampleResult> results);
   void find_hits();
   void shade();
   void shade_queued();
   void add_lamps();
   void add_linked_lights();
+  void send_ghosts();
   void add_environment();
   void put_in_lane(size_t number, const MaterialView &material);
   void shade_block();
@@ -105,6 +113,7 @@ private:
   HitStage hit_;
   MetLights met_;
   std::optional<LinkedLights> linked_; // if some light passes blockers
+  const bool haunted_;                 // limits of kinds of bounces or caustics change paths
   ShadingQueues queues_;
   TexturePrefetch textures_;
   std::optional<SceneNodeRays> node_rays_; // if a node looks around

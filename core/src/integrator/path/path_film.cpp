@@ -46,7 +46,7 @@ void PathFilm::clamp(uint32_t sample) {
     float share = 1.0f;
     if (const float top = largest(glm::abs(found)); top > settings_.clamp_indirect) {
       factor = share = settings_.clamp_indirect / top;
-      energy.clip(luminance(found) * (1.0f - share) / float(paths));
+      Energy::remove(energy.clipped, luminance(found) * (1.0f - share) / float(paths));
     }
     all += found;
     kept += found * share;
@@ -69,10 +69,28 @@ void PathFilm::add_indirect_groups(uint32_t sample, const glm::vec3 &factor) {
     extras_->channels[first + i] += indirect_groups_.channels[first + i] * factor[int(i % 3)];
 }
 
-void PathFilm::add(const Path &path, const glm::vec3 &radiance, bool environment, uint32_t group) {
+// Returns direct light, clamped as in Cycles: each contribution by the mean of its channels. parts: number of contributions
+// that share its weight.
+glm::vec3 PathFilm::clamped_direct(const glm::vec3 &light, float parts) {
+  const float level = parts * mean(glm::abs(light)), limit = settings_.clamp_direct;
+  if (!(limit > 0.0f) || !(level > limit))
+    return light;
+  const glm::vec3 kept = light * (limit / level);
+  Energy::remove(energy.clipped_direct, luminance(light - kept));
+  return kept;
+}
+
+void PathFilm::add_removed(Ghost ghost, const glm::vec3 &light) {
+  Energy::remove(ghost == Ghost::Bounces ? energy.cut : energy.no_caustics, luminance(light));
+}
+
+void PathFilm::add(const Path &path, const glm::vec3 &found, bool environment, uint32_t group) {
+  if (path.ghost != Ghost::None)
+    return add_removed(path.ghost, found);
   SampleResult &result = results_[path.sample];
-  // Light that was scattered at most once is direct; clamping never changes it.
+  // Light that was scattered at most once is direct.
   const bool indirect = path.scatterings > 1;
+  const glm::vec3 radiance = indirect ? found : clamped_direct(found, float(path.sharers));
   // A transparent film leaves the environment behind it to the environment's pass: picture and guides have none of it.
   const bool hidden = environment && settings_.film_transparent && path.in_view;
   if (wants_guides(path) && !hidden)
@@ -83,7 +101,7 @@ void PathFilm::add(const Path &path, const glm::vec3 &radiance, bool environment
     const float top = largest(glm::abs(radiance)), limit = settings_.clamp_indirect / float(path.sharers);
     const glm::vec3 seen = indirect && limit > 0.0f && top > limit ? radiance * (limit / top) : radiance;
     if (!hidden) {
-      energy.clip(luminance(radiance - seen));
+      Energy::remove(energy.clipped, luminance(radiance - seen));
       result.radiance += seen;
     }
     passes.add_seen(result, seen, environment);
@@ -104,18 +122,22 @@ void PathFilm::add_lit(const WaitingLight &waiting, const glm::vec3 &light) {
     result.light[kLightOcclusion] += light;
     return;
   }
-  add_to_group(waiting.target, waiting.group, light, waiting.indirect);
+  if (waiting.ghost != Ghost::None)
+    return add_removed(waiting.ghost, light);
+  const glm::vec3 kept = waiting.indirect ? light : clamped_direct(light, waiting.parts);
+  add_to_group(waiting.target, waiting.group, kept, waiting.indirect);
   if (waiting.indirect)
-    indirect_[waiting.target * sums() + waiting.sum] += light;
+    indirect_[waiting.target * sums() + waiting.sum] += kept;
   else
-    result.radiance += light;
-  passes.add(result, light, waiting.share, waiting.indirect);
+    result.radiance += kept;
+  passes.add(result, kept, waiting.share, waiting.indirect);
 }
 
 uint32_t PathFilm::record(SurfaceStage &surfaces, std::span<const Path> paths, const size_t (&number)[kBlockLanes],
                           uint32_t ends, uint32_t nothing) {
   for (uint32_t lane = 0; trace_ && lane < surfaces.count(); ++lane)
-    trace(paths[number[lane]], surfaces.surface(lane), surfaces.hit(lane).t);
+    if (paths[number[lane]].ghost == Ghost::None)
+      trace(paths[number[lane]], surfaces.surface(lane), surfaces.hit(lane).t);
   if (only_combined_)
     return 0;
   // As in Cycles, a surface that ends the path gives only its emission; the guides count its distance, unless it lies behind
@@ -192,7 +214,7 @@ void PathFilm::pass_absent(Path &path, const Ray &ray, HitStage &stage, size_t n
     // Passes may also record a surface of low opacity.
     if (trace_ || awaits_surface(path)) {
       const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, met);
-      if (trace_)
+      if (trace_ && path.ghost == Ghost::None)
         trace(path, surface, met.t);
       if (awaits_surface(path)) {
         const double unit = glm::length(ray.d);
@@ -239,6 +261,7 @@ WaitingLight PathFilm::waiting(const Path &path, const Floats (&share)[2][3], ui
   light.group = layout_.groups > 0 ? scene_.lights.group_of(scene_.geometry, chosen) : 0;
   light.sum = sum_of(path);
   light.indirect = path.scatterings > 0;
+  light.ghost = path.ghost;
   for (int component = 0; component < 2 && passes.components(); ++component)
     light.share[component] = path.in_view ? get(share[component], lane) : shares_[sum(path)].of[component];
   return light;
@@ -250,6 +273,8 @@ WaitingLight PathFilm::waiting(const Path &path, uint32_t group) const {
   light.group = group;
   light.sum = sum_of(path);
   light.indirect = path.scatterings > 1;
+  light.ghost = path.ghost;
+  light.parts = float(path.sharers);
   for (int component = 0; component < 2 && passes.components() && !path.in_view; ++component)
     light.share[component] = shares_[sum(path)].of[component];
   return light;

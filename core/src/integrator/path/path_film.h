@@ -128,6 +128,8 @@ private:
     to.add_light(layout_, sample, group, light);
   }
   void add_indirect_groups(uint32_t sample, const glm::vec3 &factor);
+  glm::vec3 clamped_direct(const glm::vec3 &light, float parts);
+  void add_removed(Ghost ghost, const glm::vec3 &light);
   void record(const Path &path, const Surface &surface, const MaterialView &material, const glm::vec3 &normal,
               const glm::vec3 &opacity, double t);
   void record(const Path &path, const SurfaceStage &surfaces, uint32_t lane);

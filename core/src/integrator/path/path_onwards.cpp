@@ -53,7 +53,8 @@ void PathIntegrator::look_around(uint32_t lane) {
 // Continues a path straight through a surface, unless the path has reached its limit of passed surfaces.
 void PathIntegrator::pass_straight(uint32_t lane) {
   Path path = path_of(lane);
-  if (path.crossings_left(settings_.transparent_bounces) == 0)
+  // The path that a fresh ghost belongs to passes itself.
+  if (path.fresh || path.crossings_left(settings_.transparent_bounces) == 0)
     return;
   const Hit &hit = surface_.hit(lane);
   const Ray &ray = surface_.ray(lane);
@@ -164,7 +165,7 @@ void PathIntegrator::scatter(uint32_t lane, uint32_t branch) {
   if (!ScatterStage::survives(path.scatterings + 1, numbers_.numbers.of[kVertexRoulette][lane], float(sharers), beta))
     return;
   Path &next = branch_off(next_.paths, lane, branch);
-  next.scatter(beta, scatter_.kind(lane), block.diffuse >> lane & 1, block.transmitted >> lane & 1, block.pdf[lane] == 0.0);
+  next.scatter(beta, scatter_.kind(lane), block.diffuse >> lane & 1, block.transmitted >> lane & 1, block.pdf[lane]);
   next.in_view = path.in_view && film_.stays_in_view(block, lane);
   next.sharp = path.sharp && (block.pdf[lane] == 0.0 || block.pdf[lane] >= kSharpDensity);
   next.go(surface_.distance(lane));

@@ -1,10 +1,13 @@
 // The state of a path from vertex to vertex, beside its ray and its last scattering.
 #pragma once
 
+#include "integrator/sample.h"
 #include "integrator/stages/numbers.h"
 #include "nodes/light_path.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace lancer {
 
@@ -30,7 +33,10 @@ struct Path {
   bool leaving = false;       // the path is at the end of a walk
   bool dimmed = false;        // Principled of Blender 3 has sent it below, whose exit Fresnel's weight dims
   bool after_diffuse = false; // a diffuse lobe has scattered the path
-  double length = 0.0;        // of the whole path, normalised units; set by PATH
+  Ghost ghost = Ghost::None;  // the light goes into no film
+  bool fresh = false;         // a ghost that has not been scattered yet
+  float least_pdf = std::numeric_limits<float>::infinity(); // least density of a scattering, single directions apart
+  double length = 0.0;                                      // of the whole path, normalised units; set by PATH
   // Width of a pixel where the ray starts, and its growth along the ray, as in Cycles; set by PATH where images have mipmaps.
   float width = 0.0f, spread = 0.0f;
 
@@ -39,6 +45,24 @@ struct Path {
   // this surface emits.
   uint32_t crossings_left(uint32_t limit) const {
     return last ? 0u : std::min(std::max(limit, passed_through + 1) - passed_through, kMaxCrossings - 1 - crossings);
+  }
+  // Whether the path scatters no more at its next surface, by its number of scatterings.
+  bool is_spent(const IntegratorSettings &settings) const { return last || scatterings > settings.max_bounces; }
+  // Whether a limit of a kind of scatterings ends the path there.
+  bool is_over_limit(const IntegratorSettings &settings) const {
+    return ghost == Ghost::None && (story.diffuse > settings.diffuse_bounces || story.glossy > settings.glossy_bounces ||
+                                    story.transmission > settings.transmission_bounces);
+  }
+  // Whether the next surface shows no caustics, where the settings leave them out: the ray leaves a diffuse lobe.
+  bool lacks_caustics() const { return ghost == Ghost::None && (story.kinds & RayKind::Diffuse) != 0; }
+  // Returns the least alpha of glossy lobes at the next surface; filter: filter_glossy.
+  float least_alpha(float filter) const { return least_pdf < filter ? 0.5f * std::sqrt(1.0f - least_pdf / filter) : 0.0f; }
+  // Makes the path a ghost that stands for `weight` paths.
+  void haunt(Ghost cause, float weight) {
+    ghost = cause;
+    fresh = split = true;
+    leads = in_view = false;
+    beta *= weight;
   }
   void count_crossings(uint32_t count, uint32_t limit) {
     crossings += count;
@@ -53,8 +77,12 @@ struct Path {
     split = true;
     leads = leads && number == leader;
   }
-  // Continues the path by a ray of this kind. throughput: of the ray; singular: it has a single direction.
-  void scatter(const glm::vec3 &throughput, uint32_t kind, bool is_diffuse, bool transmitted, bool singular) {
+  // Continues the path by a ray of this kind. throughput: of the ray; pdf: of its direction, 0: a single one.
+  void scatter(const glm::vec3 &throughput, uint32_t kind, bool is_diffuse, bool transmitted, double pdf) {
+    const bool singular = pdf == 0.0;
+    fresh = false;
+    if (!singular)
+      least_pdf = std::min(least_pdf, float(pdf));
     beta = throughput;
     kinds = kind;
     crossings = 0;

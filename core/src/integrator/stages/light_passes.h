@@ -10,6 +10,8 @@ struct WaitingLight {
   uint32_t target = 0, sum = 0; // PATH: number of the sample in its batch, and of its sum of indirect light; CLASSIC: the ray
   uint32_t group = 0;           // of the light, see Extras::add_light()
   bool indirect = false;        // scattered more than once
+  Ghost ghost = Ghost::None;    // of the path
+  float parts = 1.0f;           // number of contributions that share the weight of this one
   bool occlusion = false;       // no light: the pass of ambient occlusion
   glm::vec3 share[2] = {glm::vec3(0.0f), glm::vec3(0.0f)}; // diffuse, glossy; the rest is transmission
 };

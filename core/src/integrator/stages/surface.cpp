@@ -30,6 +30,10 @@ SurfaceStage::SurfaceStage(const Scene &scene, const Camera &camera, const Integ
   materials_.values = reinterpret_cast<const float(*)[4][kBlockLanes]>(values_.data());
   materials_.shares = wanted_.shown;
   materials_.spreads = scene.features & kFeatureMipmaps;
+  const bool path = settings.kind() == IntegratorKind::Path;
+  materials_.no_reflections = path && settings.no_reflections;
+  materials_.no_refractions = path && settings.no_refractions;
+  materials_.blurs = path && settings.filter_glossy > 0.0f;
   lobes_.storage = reinterpret_cast<std::byte *>(storage_.data());
   nodes_.scene = scene.node_scene(&camera);
   if (!(scene.features & kFeatureMotion))
@@ -229,6 +233,7 @@ void SurfaceStage::clear() {
   count_ = 0;
   hits_.used = hits_.on_mesh = hits_.smooth = hits_.exact = hits_.on_plane = hits_.on_cylinder = hits_.on_cone = 0;
   materials_.ends = materials_.seen_by_camera = materials_.after_diffuse = materials_.dimmed = 0;
+  materials_.no_caustics = materials_.only_caustics = 0;
   materials_.leaving = false;
 }
 

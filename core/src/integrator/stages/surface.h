@@ -51,8 +51,12 @@ struct alignas(64) MaterialBlock {
   uint32_t dimmed = 0;                             // bits of lanes: Fresnel's weight dims the exit from below; by place_path()
   Floats pixel;                                    // width of a pixel there, user's units; by place_path()
   Words key;                                       // of the numbers of estimates; by set_key()
-  bool shares = false;                             // diffuse and glossy shares of light are wanted
-  bool spreads = false;                            // the spread of rays is wanted, for images with mipmaps
+  // The limits of paths, by limit(): bits of lanes that lack caustics, or have nothing else; the least alpha of glossy lobes.
+  bool no_reflections = false, no_refractions = false, blurs = false; // the settings
+  uint32_t no_caustics = 0, only_caustics = 0;
+  Floats least_alpha;
+  bool shares = false;  // diffuse and glossy shares of light are wanted
+  bool spreads = false; // the spread of rays is wanted, for images with mipmaps
 };
 
 // The lobes, with normals and emission on the viewer's side; by build_lobes().
@@ -121,6 +125,15 @@ public:
     materials_.dimmed |= uint32_t{dimmed} << lane;
     materials_.leaving = leaving;
     materials_.pixel[lane] = pixel;
+  }
+  // Whether paths may lack caustics, or meet blurred lobes, so that limit() is needed.
+  bool limits() const { return materials_.no_reflections | materials_.no_refractions | materials_.blurs; }
+  // Limits the lobes of a lane: without the caustics that the settings leave out, or with these alone; with glossy lobes of at
+  // least this alpha.
+  void limit(uint32_t lane, bool no_caustics, bool only_caustics, float least_alpha) {
+    materials_.no_caustics |= uint32_t{no_caustics} << lane;
+    materials_.only_caustics |= uint32_t{only_caustics} << lane;
+    materials_.least_alpha[lane] = least_alpha;
   }
   // Sets the key of the random numbers by which the lobes of a lane estimate their values, where the material has any such.
   void set_key(uint32_t lane, uint32_t key) { materials_.key[lane] = key; }

@@ -77,6 +77,23 @@ LANCER_LANE F widest_alpha2(const Bsdf<F> &bsdf) {
   return widest;
 }
 
+LobeLimits<F> limits_of(const MaterialBlock &materials, int first) {
+  LobeLimits<F> limits;
+  limits.lacks_reflections = materials.no_reflections;
+  limits.lacks_refractions = materials.no_refractions;
+  limits.caustics = (materials.no_caustics | materials.only_caustics) != 0;
+  limits.blurs = materials.blurs;
+  if (limits.caustics) {
+    const M lacking = some(materials.no_caustics, first), none = mask_of(0);
+    limits.no_reflections = materials.no_reflections ? lacking : none;
+    limits.no_refractions = materials.no_refractions ? lacking : none;
+    limits.only_caustics = some(materials.only_caustics, first);
+  }
+  if (limits.blurs)
+    limits.least_alpha = load(materials.least_alpha + first);
+  return limits;
+}
+
 void build(const SurfaceBlock &surfaces, const MaterialBlock &materials, LobeBlock &lobes) {
   lobes.transmits = lobes.scatters = lobes.enters = lobes.sheets = 0;
   lobes.shares = materials.shares;
@@ -96,7 +113,8 @@ void build(const SurfaceBlock &surfaces, const MaterialBlock &materials, LobeBlo
                    .leaving = materials.leaving,
                    .dimmed = some(materials.dimmed, first),
                    .pixel = load(materials.pixel + first),
-                   .key = load(materials.key + first)});
+                   .key = load(materials.key + first),
+                   .limits = limits_of(materials, first)});
     store3(lobes.ns, first, bsdf.ns);
     store3(lobes.ng, first, bsdf.ng);
     store3(lobes.emission, first, bsdf.emission);
