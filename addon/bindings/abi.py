@@ -14,6 +14,7 @@ from .library_file import library_path
 from .structs import *  # noqa: F403
 from .structs import (
     STRUCTS,
+    Bake,
     Camera,
     DenoisedError,
     Error,
@@ -65,6 +66,7 @@ _CALLS = {
     "lancer_scene_cancel": (_u64,),
     "lancer_scene_messages": (_u64, c_char_p, c_size_t, POINTER(c_size_t)),
     "lancer_session_create": (_u64, POINTER(Camera), POINTER(Settings), POINTER(_u64)),
+    "lancer_session_create_bake": (_u64, POINTER(Camera), POINTER(Settings), POINTER(Bake), POINTER(_u64)),
     "lancer_session_destroy": (_u64,),
     "lancer_session_render": (_u64, _u32, _u32),
     "lancer_session_wait": (_u64, _u32, POINTER(Progress)),

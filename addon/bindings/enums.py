@@ -55,6 +55,8 @@ class Struct(IntEnum):
     MADE = 25
     MOTION = 26
     OUTPUT = 27
+    TEXEL = 28
+    BAKE = 29
 
 
 class NormalDomain(IntEnum):
@@ -632,3 +634,11 @@ class PassKind(IntEnum):
     @property
     def channels(self):
         return (0, 4, 4, 4, 3, 4, 1, 1, 1)[self]
+
+
+class BakeView(IntEnum):
+    """From where a bake looks at its surface."""
+
+    ABOVE = 0
+    CAMERA = 1
+    SKY = 2

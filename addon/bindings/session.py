@@ -117,9 +117,9 @@ class Session(Handle, SessionParts, SessionProbes):
         library = scene.library
         self._create(library, scene, camera, settings, library.lancer_session_create, scene.handle)
 
-    def _create(self, library, scene, camera, settings, create, identity):
+    def _create(self, library, scene, camera, settings, create, identity, *more):
         handle = ctypes.c_uint64()
-        arguments = ctypes.byref(marshal.camera(camera)), ctypes.byref(marshal.settings(settings))
+        arguments = ctypes.byref(marshal.camera(camera)), ctypes.byref(marshal.settings(settings)), *more
         check(create(identity, *arguments, ctypes.byref(handle)), library)
         self._own(library, library.lancer_session_destroy, handle.value, None if scene is None else scene.pages)
         self.scene = scene
@@ -133,6 +133,14 @@ class Session(Handle, SessionParts, SessionProbes):
         library = library or load_library()
         session = cls.__new__(cls)
         session._create(library, None, camera, settings, library.lancer_session_create_joiner, bytes(digest))
+        return session
+
+    @classmethod
+    def bake(cls, scene, camera, settings, texels):
+        """Return a session whose pixels are the Texels of a surface; the camera has their width and height."""
+        session = cls.__new__(cls)
+        create, bake = scene.library.lancer_session_create_bake, texels.as_struct()
+        session._create(scene.library, scene, camera, settings, create, scene.handle, ctypes.byref(bake))
         return session
 
     @classmethod

@@ -400,6 +400,29 @@ class Statistics(Structure):
     ]
 
 
+class Texel(Structure):
+    """A texel of an image that shows the surface of a mesh."""
+
+    _fields_ = [
+        ("triangle", c_uint32),
+        ("weights", c_float * 2),
+        ("dx", c_float * 2),
+        ("dy", c_float * 2),
+    ]
+
+
+class Bake(Structure):
+    """The picture of a surface in texels, in place of the camera's view."""
+
+    _fields_ = [
+        ("texels", POINTER(Texel)),
+        ("texel_count", c_uint32),
+        ("instance", c_uint32),
+        ("view", c_uint32),
+        ("reserved", c_uint32),
+    ]
+
+
 class Error(Structure):
     """The distance of the picture from the converged one."""
 
@@ -568,6 +591,8 @@ STRUCTS = {
     Struct.MADE: Made,
     Struct.MOTION: Motion,
     Struct.OUTPUT: Output,
+    Struct.TEXEL: Texel,
+    Struct.BAKE: Bake,
 }
 
 # Kind and default of each parameter, from lancer.h.

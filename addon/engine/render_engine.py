@@ -7,6 +7,7 @@ import time
 
 import bpy
 
+from ..bake.bake import Bake
 from ..bindings.abi import LancerError
 from ..bindings.session import Cancelled, Scene, Session
 from ..denoise import view_layer as denoise
@@ -71,7 +72,8 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         passes.register_passes(self, scene, renderlayer)
 
     def update(self, data=None, depsgraph=None):
-        if self.is_preview:
+        # A bake has no resolution, and exports by itself.
+        if self.is_preview or self.resolution_x == 0:
             return
         if render_export.is_wanted():
             render_export.take(self, depsgraph)
@@ -104,6 +106,15 @@ class LancerRenderEngine(bpy.types.RenderEngine):
                 # The remaining layers are not rendered.
                 self._picture = None
             redraw.properties_after_render()
+
+    def bake(self, depsgraph, object, pass_type, pass_filter, width, height):
+        scene = depsgraph.scene
+        if self._picture is None:
+            self._picture = Picture((scene.name, scene.frame_current_final), ())
+            last_messages.pop(scene, None)
+        with self._working():
+            job = Bake(self, depsgraph, object, lambda messages: self._tell(scene, messages), self._is_over)
+            self._guarded(scene, job.run, pass_type, pass_filter, width, height)
 
     def view_update(self, context, depsgraph):
         self._view().update(context, depsgraph)

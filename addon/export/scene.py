@@ -33,6 +33,7 @@ _POLL_EVERY = 0.005
 class ExportOptions:
     camera: object = None  # the camera object; None is the scene's
     passes: tuple = (Pass.COMBINED,)
+    picture: object = None  # the snapshot.Camera of a picture that no camera object takes: a bake's
     kept: object = None  # the Kept of earlier frames
     parts: object = None  # the Parts of earlier exports
     on_mesh: object = None  # is called with each MeshData as soon as it is read
@@ -69,7 +70,7 @@ def export_scene(depsgraph, options=None, poll=None):
     scene = depsgraph.scene
     view_layer = depsgraph.view_layer
     # Read camera and settings first, so that an error in them ends the export early.
-    camera = options.view or export_camera(options.camera or scene.camera, depsgraph, messages)
+    camera = options.view or options.picture or export_camera(options.camera or scene.camera, depsgraph, messages)
     world = world_of(depsgraph)
     # The view layer refers to original data without animation: use the evaluated copy.
     override = view_layer.material_override and view_layer.material_override.evaluated_get(depsgraph)

@@ -13,7 +13,7 @@ RANKS = (
     "host",
     "measure denoise checks export",
     "farm",
-    "viewport settings",
+    "viewport settings bake",
     "engine",
     "operators",
     "ui",

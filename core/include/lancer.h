@@ -93,6 +93,8 @@ typedef enum lancer_struct {
   LANCER_STRUCT_MADE,
   LANCER_STRUCT_MOTION,
   LANCER_STRUCT_OUTPUT,
+  LANCER_STRUCT_TEXEL,
+  LANCER_STRUCT_BAKE,
   LANCER_STRUCT_COUNT
 } lancer_struct;
 /* Returns sizeof the struct with this lancer_struct number, or 0 for an unknown number, so that a caller can refuse a stale
@@ -1192,6 +1194,35 @@ typedef struct lancer_statistics {
 /* Checks camera and settings and allocates the film. Fails unless the scene is committed. */
 LANCER_API lancer_status lancer_session_create(lancer_scene scene, const lancer_camera *camera, const lancer_settings *settings,
                                                lancer_session *session);
+/* From where a bake looks at its surface. */
+enum lancer_bake_view {
+  LANCER_BAKE_ABOVE = 0,  /* along the normal */
+  LANCER_BAKE_CAMERA = 1, /* from the camera; faces that look away from the camera are turned towards it, as in Cycles */
+  LANCER_BAKE_SKY = 2     /* not at the surface: from the world's origin to the place, at the environment */
+};
+
+/* A texel of an image that shows the surface of a mesh. */
+typedef struct lancer_texel {
+  uint32_t triangle; /* number of a triangle of the mesh; one that the mesh lacks: the texel is empty, and black with alpha 0 */
+  float weights[2];  /* barycentric weights of the triangle's corners 0 and 1 in the middle of the texel */
+  float dx[2];       /* their change over the texel along a row, */
+  float dy[2];       /* and along a column */
+} lancer_texel;
+
+/* The picture of a surface in texels, in place of the camera's view. */
+typedef struct lancer_bake {
+  const lancer_texel *texels; /* [texel_count], by row from the bottom */
+  uint32_t texel_count;       /* the camera's width times its height */
+  uint32_t instance;          /* its number in order of adding; a mesh. All texels of one that was left out are empty */
+  uint32_t view;              /* LANCER_BAKE_* */
+  uint32_t reserved;
+} lancer_bake;
+/* As lancer_session_create, for a session whose samples begin on a surface: its passes are those of a picture whose pixels see
+ * their texels. PATH only. Each sample takes a random place of its texel on its triangle. Of the camera, its size counts, its
+ * place for LANCER_BAKE_CAMERA, and all of it for nodes that read the camera. Such a session has no parts. */
+LANCER_API lancer_status lancer_session_create_bake(lancer_scene scene, const lancer_camera *camera,
+                                                    const lancer_settings *settings, const lancer_bake *bake,
+                                                    lancer_session *session);
 LANCER_API lancer_status lancer_session_destroy(lancer_session session);
 /* Starts the samples first ... first + count - 1 of every pixel. first must be the end of the range rendered before (0 at
  * the start). The bits do not depend on how a range is split, the number of threads or the tile size. Memory does: ranges

@@ -44,7 +44,8 @@ uint32_t lancer_sizeof(uint32_t which) {
       sizeof(lancer_light_sample), sizeof(lancer_bsdf_sample),    sizeof(lancer_attribute), sizeof(lancer_image),
       sizeof(lancer_node),         sizeof(lancer_principled),     sizeof(lancer_world),     sizeof(lancer_lobe_info),
       sizeof(lancer_error),        sizeof(lancer_denoised_error), sizeof(lancer_range),     sizeof(lancer_part),
-      sizeof(lancer_portal),       sizeof(lancer_made),           sizeof(lancer_motion),    sizeof(lancer_output)};
+      sizeof(lancer_portal),       sizeof(lancer_made),           sizeof(lancer_motion),    sizeof(lancer_output),
+      sizeof(lancer_texel),        sizeof(lancer_bake)};
   return which < LANCER_STRUCT_COUNT ? uint32_t(sizes[which]) : 0;
 }
 

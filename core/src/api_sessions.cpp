@@ -2,6 +2,7 @@
 #include "lancer_probes.h"
 #include "objects.h"
 #include "render/denoised.h"
+#include "render/fill_bake.h"
 #include "render/session.h"
 
 #include <algorithm>
@@ -15,6 +16,15 @@ using namespace lancer;
 // Longest side of a picture that comes in arrays, far above Blender's.
 constexpr uint32_t kLongestSide = 1u << 20;
 
+// Returns the committed scene, and completes the identity of its pictures.
+std::shared_ptr<const Scene> committed_of(lancer_scene scene, Identity &identity) {
+  const auto object = scene_of(scene);
+  const std::lock_guard lock(object->mutex);
+  identity.digest = object->digest;
+  identity.has_digest = object->has_digest;
+  return object->committed();
+}
+
 } // namespace
 
 extern "C" {
@@ -22,19 +32,31 @@ extern "C" {
 lancer_status lancer_session_create(lancer_scene scene, const lancer_camera *camera, const lancer_settings *settings,
                                     lancer_session *session) {
   return guard([&] {
-    const auto object = scene_of(scene);
     require(camera, "camera");
     require(settings, "settings");
     require(session, "session");
-    std::shared_ptr<const Scene> committed;
     Identity identity{{}, false, *camera, *settings, this_release()};
-    {
-      const std::lock_guard lock(object->mutex);
-      committed = object->committed();
-      identity.digest = object->digest;
-      identity.has_digest = object->has_digest;
-    }
+    auto committed = committed_of(scene, identity);
     *session = sessions().add(std::make_shared<SessionObject>(std::move(committed), identity));
+    return LANCER_OK;
+  });
+}
+
+lancer_status lancer_session_create_bake(lancer_scene scene, const lancer_camera *camera, const lancer_settings *settings,
+                                         const lancer_bake *bake, lancer_session *session) {
+  return guard([&] {
+    require(camera, "camera");
+    require(settings, "settings");
+    require(bake, "bake");
+    require(session, "session");
+    if (settings->integrator != LANCER_PATH)
+      bad_argument("bake: only PATH bakes");
+    Identity identity{{}, false, *camera, *settings, this_release()};
+    auto committed = committed_of(scene, identity);
+    // Parts of pictures do not tell texels: a bake has none.
+    identity.has_digest = false;
+    auto texels = std::make_unique<const Bake>(read_bake(*bake, *committed, read_camera(*camera)));
+    *session = sessions().add(std::make_shared<SessionObject>(std::move(committed), identity, std::move(texels)));
     return LANCER_OK;
   });
 }

@@ -178,8 +178,9 @@ public:
 };
 
 struct SessionObject {
-  SessionObject(std::shared_ptr<const Scene> scene, const Identity &identity)
-      : session(std::move(scene), read_camera(identity.camera), read_settings(identity.settings), identity) {}
+  SessionObject(std::shared_ptr<const Scene> scene, const Identity &identity, std::unique_ptr<const Bake> bake = nullptr)
+      : session(std::move(scene), read_camera(identity.camera), read_settings(identity.settings), identity,
+                std::move(bake)) {}
   std::mutex mutex;
   Session session;
 };

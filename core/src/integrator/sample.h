@@ -42,12 +42,15 @@ using SettingOf =
     std::conditional_t<kind == SettingKind::Switch, bool,
                        std::conditional_t<kind == SettingKind::Amount || kind == SettingKind::Width, float, uint32_t>>;
 
+struct Bake;
+
 struct IntegratorSettings {
 #define LANCER_MEMBER(kind, name, given, most) SettingOf<SettingKind::kind> name = given;
   LANCER_SETTINGS(LANCER_MEMBER)
 #undef LANCER_MEMBER
   Splits splits{};                           // as the settings say, or as a pilot has found
   const std::atomic<bool> *cancel = nullptr; // raised: a batch may end with invalid results
+  const Bake *bake = nullptr;            // of a bake, PATH
 
   IntegratorKind kind() const { return static_cast<IntegratorKind>(integrator); }
   FilterKind filter() const { return static_cast<FilterKind>(pixel_filter); }

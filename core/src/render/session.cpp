@@ -71,13 +71,14 @@ uint32_t tile_size(const Camera &camera, const IntegratorSettings &settings, uin
 } // namespace
 
 Session::Session(std::shared_ptr<const Scene> scene, const Camera &camera, const IntegratorSettings &settings,
-                 const Identity &identity)
+                 const Identity &identity, std::unique_ptr<const Bake> bake)
     : scene_(std::move(scene)), camera_(normalised(checked_memory(camera, settings), scene_.get())), identity_(identity),
-      settings_(settings),
+      bake_(std::move(bake)), settings_(settings),
       film_(camera.region_width, camera.region_height, tile_size(camera, settings, ThreadPool::resolved(settings.threads)),
             settings.passes, settings.refines, settings.extras()),
       pool_(scene_ ? settings.threads : 1) {
   settings_.cancel = &cancel_;
+  settings_.bake = bake_.get();
   splits_ = settings_.splits;
   for (uint32_t i = 0; scene_ && i < pool_.size(); ++i)
     workers_.push_back(std::make_unique<TileWorker>(*scene_, camera_, settings_));

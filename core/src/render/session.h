@@ -8,6 +8,7 @@
 #include "render/pilot.h"
 #include "render/thread_pool.h"
 #include "render/tile_worker.h"
+#include "scene/bake.h"
 
 #include <atomic>
 #include <chrono>
@@ -50,9 +51,9 @@ struct SessionError {
 class Session {
 public:
   // camera in the user's units. scene: null for a session that joins parts and cannot render. Throws Error when camera,
-  // settings or memory do not allow the film.
+  // settings or memory do not allow the film. bake: with as many texels as the camera has pixels.
   Session(std::shared_ptr<const Scene> scene, const Camera &camera, const IntegratorSettings &settings,
-          const Identity &identity = {});
+          const Identity &identity = {}, std::unique_ptr<const Bake> bake = nullptr);
   ~Session();
 
   // Starts samples first ... first + count - 1; throws Error when first does not follow the last sample, or while another range
@@ -121,6 +122,7 @@ private:
   Camera camera_;                      // normalised
   Identity identity_;
 
+  std::unique_ptr<const Bake> bake_; // of a bake
   IntegratorSettings settings_;
   Film film_;
   std::vector<std::unique_ptr<TileWorker>> workers_;

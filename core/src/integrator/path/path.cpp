@@ -15,10 +15,12 @@ void PathIntegrator::run(std::span<const SampleAddress> addresses, std::span<Sam
   start(addresses, results);
   const auto gathered = [&](uint32_t sample) { return film_.gathered(sample); };
   for (uint32_t turn = 0; !(queue_.paths.empty() && below_.empty()) && !settings_.cancelled(); ++turn) {
-    // Find the next hit of every path.
-    find_hits();
+    // Find the next hit of every path; a bake begins at hits.
+    if (!at_texels_)
+      find_hits();
     // Add the light that rays run into, light the hits, and sample the next direction of each path.
     shade();
+    at_texels_ = false;
     // Keep the light before the last bounces, from which the light beyond them is estimated.
     if (last_bounces_.due(turn))
       last_bounces_.note(
@@ -41,16 +43,21 @@ void PathIntegrator::start(std::span<const SampleAddress> addresses, std::span<S
   below_.clear();
   walks_.clear();
   last_bounces_.begin();
-  camera_.start(addresses, film_.passes.wanted(), results, [&](uint32_t sample, const Sampler &sampler) -> Ray & {
+  const auto begin = [&](uint32_t sample, const Sampler &sampler) -> Ray & {
     queue_.paths.emplace_back(sampler, sample);
     return queue_.rays.emplace_back();
-  });
+  };
+  at_texels_ = texels_.has_value();
+  if (at_texels_)
+    texels_->start(addresses, film_.passes.wanted(), results, hits_, begin);
+  else
+    camera_.start(addresses, film_.passes.wanted(), results, begin);
   queue_.from.resize(queue_.rays.size());
   for (size_t i = 0; i < queue_.rays.size(); ++i)
     queue_.from[i].p = queue_.rays[i].o;
   for (size_t i = 0; i < queue_.rays.size() && scene_.features & kFeatureMipmaps; ++i) {
-    queue_.paths[i].width = float(width_at_eye_);
-    queue_.paths[i].spread = float(spread_at_eye_(queue_.rays[i].d));
+    queue_.paths[i].width = at_texels_ ? texels_->width(i) : float(width_at_eye_);
+    queue_.paths[i].spread = at_texels_ ? 0.0f : float(spread_at_eye_(queue_.rays[i].d));
   }
   counts_.camera += queue_.paths.size();
 }
@@ -69,7 +76,8 @@ void PathIntegrator::find_hits() {
 void PathIntegrator::shade() {
   next_.clear();
   // Add lamps; sort the hits into queues; add the environment.
-  add_lamps();
+  if (!at_texels_)
+    add_lamps();
   if (linked_)
     add_linked_lights();
   if (haunted_)
@@ -228,7 +236,9 @@ void PathIntegrator::shade_block() {
         const double unit = surface_.surfaces().length[lane], t = surface_.hit(lane).t;
         View view = surface_.view(lane, path.length + t * unit,
                                   path.light_path((t - surface_.ray(lane).tmin) * unit / scene_.normalisation.scale, t * unit));
-        view.pixel = path.sampler.pixel();
+        if (at_texels_)
+      view.footprint = texels_->width(path_[lane]);
+    view.pixel = path.sampler.pixel();
         view.sample = path.sampler.sample();
         view.dimension = path.nodes_dimension();
         view.sharp = path.sharp;

@@ -14,6 +14,7 @@
 #include "integrator/stages/shading_queues.h"
 #include "integrator/stages/shadow.h"
 #include "integrator/stages/surface.h"
+#include "integrator/stages/texels.h"
 #include "integrator/stages/texture_prefetch.h"
 #include "integrator/stages/walk.h"
 
@@ -38,6 +39,8 @@ public:
       surface_.walk_below();
       walk_.emplace(scene);
     }
+    if (settings.bake)
+      texels_.emplace(scene, camera, settings);
     PathIntegrator::set_splits(settings.splits);
   }
 
@@ -109,6 +112,8 @@ private:
   double width_at_eye_; // of a pixel
   // The stages, in the order of a bounce.
   CameraStage camera_;
+  std::optional<TexelStage> texels_; // of a bake, in place of the camera and its first hits
+  bool at_texels_ = false;
   PathFilm film_;
   HitStage hit_;
   MetLights met_;

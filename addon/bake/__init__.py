@@ -1,0 +1,1 @@
+"""Object > Bake: what the texels of an image show of a surface."""

@@ -1,0 +1,103 @@
+"""One bake of one object: exports the scene, renders the texels range by range, and hands their picture to Blender."""
+
+import dataclasses
+
+import numpy as np
+
+from ..bindings import snapshot
+from ..bindings.abi import LancerError
+from ..bindings.enums import BakeView, InstanceKind
+from ..bindings.session import Scene, Session
+from ..bindings.texels import Texels
+from ..export.camera import camera_fields
+from ..export.scene import ExportOptions, export_scene
+from ..host import shared_scenes
+from ..host.priority import lowered
+from ..measure.schedule import Schedule
+from ..messages.messages import Messages
+from .pixels import read_texels, write_picture
+from .wanted import wanted
+
+_STEP = 0.05  # seconds between polls
+# Samples of passes without light: a texel's mean over its own area.
+_DATA_SAMPLES = 64
+
+
+class Bake:
+    """The job of engine.bake(). tell(messages): reports Messages; is_over(): whether the user has cancelled."""
+
+    def __init__(self, engine, depsgraph, thing, tell, is_over):
+        self._engine, self._depsgraph, self._thing = engine, depsgraph, thing
+        self._tell, self._is_over = tell, is_over
+
+    def run(self, kind, pass_filter, width, height):
+        """Bake a type with Blender's bits of a pass filter into an image of this size."""
+        asked = wanted(kind, pass_filter)
+        if asked is None:
+            raise LancerError(f"baking of type {kind.title()} is not supported: choose another type, or bake with Cycles")
+        self._engine.update_stats("", "Exporting")
+        result = self._engine.begin_result(0, 0, width, height, layer="bake\n")
+        try:
+            rows = read_texels(result.layers[0], width, height)
+            shot = self._export(asked, width, height)
+            texels = Texels(rows, self._instance(shot.instances), _view(self._depsgraph.scene, kind))
+            self._engine.update_stats("", "Building the scene")
+            with lowered(lambda: self._session(shot, texels)) as session:
+                self._tell(Messages.of_library(session.messages()))
+                self._render(session)
+                write_picture(result.layers[0], asked.picture(session.read))
+        finally:
+            self._engine.end_result(result)
+
+    def _export(self, asked, width, height):
+        camera = _camera(self._depsgraph, width, height)
+        options = ExportOptions(passes=asked.passes, picture=camera)
+        shot, messages = export_scene(self._depsgraph, options, self._is_over)
+        changes = {"film_transparent": True}
+        if asked.bounces is not None:
+            changes["max_bounces"] = asked.bounces
+        if asked.kind not in ("COMBINED", "DIFFUSE", "GLOSSY", "TRANSMISSION", "AO"):
+            changes |= {"target_error": 0.0, "samples": min(shot.settings.samples, _DATA_SAMPLES)}
+        shot.set("settings", dataclasses.replace(shot.settings, **changes))
+        self._tell(messages)
+        return shot
+
+    def _instance(self, table):
+        """Return the row of the baked object itself, not of its instances."""
+        name = self._thing.original.name
+        if name in table.names:
+            rows = np.flatnonzero((table.name_indices == table.names.index(name)) & (table.kinds == InstanceKind.MESH))
+            if len(rows):
+                return int(rows[0])
+        raise LancerError(f"object '{name}' shows no mesh in the render: enable it for renders, and give it faces")
+
+    def _session(self, shot, texels):
+        before = shared_scenes.nearest(shot)
+        scene = Scene.upload(shot, poll=self._is_over, before=before, stock=shared_scenes.stock)
+        shared_scenes.remember(scene)
+        return Session.bake(scene, shot.camera, shot.settings, texels)
+
+    def _render(self, session):
+        schedule = Schedule(session)
+        while schedule.start():
+            while not schedule.wait(_STEP).finished:
+                if self._is_over():
+                    schedule.cancel()
+                self._engine.update_progress(schedule.fraction)
+            if self._is_over():
+                return
+
+
+def _view(scene, kind):
+    if kind == "ENVIRONMENT":
+        return BakeView.SKY
+    return BakeView.CAMERA if getattr(scene.render.bake, "view_from", "") == "ACTIVE_CAMERA" else BakeView.ABOVE
+
+
+def _camera(depsgraph, width, height):
+    """Return the snapshot.Camera of the scene, for nodes that read it, with the size of the image."""
+    thing = depsgraph.scene.camera
+    if thing is None or thing.type != "CAMERA":
+        return snapshot.Camera(width=width, height=height)
+    fields = camera_fields(thing.evaluated_get(depsgraph), depsgraph, Messages())
+    return snapshot.Camera(width=width, height=height, **{**fields, "lens_radius": 0.0})

@@ -1,0 +1,91 @@
+"""The passes that a type of bake reads, and the picture that they make."""
+
+from typing import NamedTuple
+
+import bpy
+import numpy as np
+
+from ..bindings.enums import Pass
+
+_DATA = {
+    "POSITION": Pass.POSITION,
+    "NORMAL": Pass.NORMAL,
+    "UV": Pass.UV,
+    "ROUGHNESS": Pass.ROUGHNESS,
+    "EMIT": Pass.EMISSION,
+    "ENVIRONMENT": Pass.ENVIRONMENT,
+    "AO": Pass.AMBIENT_OCCLUSION,
+}
+_COMPONENTS = ("DIFFUSE", "GLOSSY", "TRANSMISSION")
+# Types that need no light beyond the first surface.
+_SHALLOW = frozenset(_DATA)
+
+
+class Wanted(NamedTuple):
+    """direct, indirect, color: which parts of the light of the components count; emission: whether emitted light does."""
+
+    kind: str  # bpy.ops.object.bake's type
+    components: tuple = ()
+    direct: bool = False
+    indirect: bool = False
+    color: bool = False
+    emission: bool = False
+    whole: bool = False  # all of Combined
+
+    @property
+    def passes(self):
+        """The core's passes."""
+        if self.kind in _DATA:
+            return (_DATA[self.kind],)
+        if self.whole:
+            return (Pass.COMBINED,)
+        parts = [name for name, is_on in (("DIRECT", self.direct), ("INDIRECT", self.indirect), ("COLOR", self.color)) if is_on]
+        found = tuple(Pass[f"{component}_{part}"] for component in self.components for part in parts)
+        return (Pass.COMBINED, *found, *((Pass.EMISSION,) if self.emission else ()))
+
+    @property
+    def bounces(self):
+        """The most scatterings after the first that count; None: as the scene says."""
+        return 0 if self.kind in _SHALLOW or not self.indirect else None
+
+    def picture(self, read):
+        """Return (height, width, 4) float32; read(source): as Session.read."""
+        if self.whole:
+            return read(Pass.COMBINED)
+        rgb = self._sum(read)
+        return np.concatenate([rgb, np.ones((*rgb.shape[:2], 1), np.float32)], axis=2)
+
+    def _sum(self, read):
+        if self.kind in _DATA:
+            values = read(_DATA[self.kind])
+            return np.broadcast_to(values, (*values.shape[:2], 3)) if values.shape[2] == 1 else values[..., :3]
+        total = read(Pass.EMISSION) if self.emission else np.zeros_like(read(Pass.COMBINED)[..., :3])
+        for component in self.components:
+            light = [read(Pass[f"{component}_{part}"]) for part, is_on in self._light if is_on]
+            color = read(Pass[f"{component}_COLOR"]) if self.color else 1.0
+            # Without light the colour itself is baked.
+            total = total + (sum(light) * color if light else color if self.color else 0.0)
+        return total
+
+    @property
+    def _light(self):
+        return ("DIRECT", self.direct), ("INDIRECT", self.indirect)
+
+
+def wanted(kind, pass_filter):
+    """Return the Wanted of a type of bake with Blender's bits of a pass filter, or None for a type that is not supported."""
+    if kind in _DATA:
+        return Wanted(kind)
+    bits = {item.identifier: item.value for item in bpy.types.BakeSettings.bl_rna.properties["pass_filter"].enum_items}
+
+    def has(*names):
+        return all(pass_filter & bits[name] for name in names)
+
+    light = {"direct": has("DIRECT"), "indirect": has("INDIRECT")}
+    if kind in _COMPONENTS:
+        return Wanted(kind, (kind,), **light, color=has("COLOR"))
+    if kind != "COMBINED":
+        return None
+    components = tuple(name for name in _COMPONENTS if has(name))
+    whole = has("DIRECT", "INDIRECT", "EMIT", *_COMPONENTS)
+    return Wanted(kind, components, **light, color=True, emission=has("EMIT"), whole=whole)
