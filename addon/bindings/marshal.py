@@ -108,6 +108,8 @@ def instances(table):
     rows["hidden_from"] = table.hidden_from
     rows["terminator"] = table.terminators
     rows["flags"] = table.flags
+    if table.fast_distances is not None:
+        rows["fast_distance"] = table.fast_distances
     if table.links is not None:
         for name, values in zip(("receiver_set", "blocker_set", "unlit_sets", "clear_sets"), table.links.T, strict=True):
             rows[name] = values

@@ -183,6 +183,7 @@ class InstanceTable(Record):
     light_groups: np.ndarray | None = None
     infos: np.ndarray | None = None  # (n, 5): colour, alpha and random number for OBJECT_INFO; None: white and 0
     links: np.ndarray | None = None  # (n, 4): receiver_set, blocker_set, unlit_sets, clear_sets; None: all 0
+    fast_distances: np.ndarray | None = None  # (n,), of Fast GI; None: all 0
     attributes: tuple[ObjectAttribute, ...] = ()
     names: tuple[str, ...] = ()
     asset_names: tuple[str, ...] = ()  # of which asset_mattes has the ids
@@ -203,6 +204,8 @@ class InstanceTable(Record):
         for name in ("object_mattes", "asset_mattes", "light_groups"):
             if getattr(self, name) is not None:
                 self.set(name, array(getattr(self, name), np.uint32, (count,), name))
+        if self.fast_distances is not None:
+            self.set("fast_distances", array(self.fast_distances, np.float32, (count,), "fast_distances"))
         if self.links is not None:
             self.set("links", array(self.links, np.uint64, (count, 4), "links"))
         for name in _INSTANCE_COLUMNS:
@@ -316,6 +319,11 @@ class Camera(Record):
     aperture_rotation: float = 0.0
     aperture_ratio: float = 1.0
     panorama: tuple = (0.0,) * 8  # parameters of the panoramic kinds
+    # Spherical stereo
+    eye_offset: float = 0.0
+    convergence_distance: float = 0.0
+    pole_merge_from: float = 0.0
+    pole_merge_to: float = 0.0
 
     def __post_init__(self):
         self.set("matrix", array(np.asarray(self.matrix, float)[:3], np.float64, (3, 4), "camera matrix"))

@@ -66,6 +66,8 @@ class Instance(Structure):
         ("terminator", c_float),
         ("receiver_set", c_uint32),
         ("blocker_set", c_uint32),
+        ("fast_distance", c_float),
+        ("reserved", c_uint32),
         ("unlit_sets", c_uint64),
         ("clear_sets", c_uint64),
     ]
@@ -298,6 +300,10 @@ class Camera(Structure):
         ("focal_distance", c_double),
         ("aperture_rotation", c_double),
         ("aperture_ratio", c_double),
+        ("eye_offset", c_double),
+        ("convergence_distance", c_double),
+        ("pole_merge_from", c_double),
+        ("pole_merge_to", c_double),
     ]
 
 
@@ -333,6 +339,10 @@ class Settings(Structure):
         ("no_refractions", c_uint32),
         ("filter_glossy", c_float),
         ("exposure", c_float),
+        ("fast_bounces", c_uint32),
+        ("fast_factor", c_float),
+        ("fast_distance", c_float),
+        ("ambient", c_float),
         ("split_lights", c_uint32),
         ("split_paths", c_uint32),
         ("pixel_filter", c_uint32),
@@ -685,6 +695,10 @@ SETTINGS = {
     "no_refractions": ("switch", False),
     "filter_glossy": ("amount", 0.0),
     "exposure": ("amount", 1.0),
+    "fast_bounces": ("number", 0),
+    "fast_factor": ("amount", 1.0),
+    "fast_distance": ("amount", 0.0),
+    "ambient": ("amount", 0.0),
     "split_lights": ("number", 1),
     "split_paths": ("number", 1),
     "pixel_filter": ("choice", 0),

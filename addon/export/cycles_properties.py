@@ -54,14 +54,13 @@ _SCENE = {
         "max_bounces", "transparent_max_bounces", "sample_clamp_indirect", "diffuse_bounces", "glossy_bounces",
         "transmission_bounces", "blur_glossy",
     ),
-    **_told("Lancer lets light bounce on", "use_fast_gi"),
+    **_followed("replaces bounced light, or adds to it", "use_fast_gi", "fast_gi_method", "ao_bounces_render"),
+    **_none("acts on Fast GI in views alone", "ao_bounces"),
     **_told("Lancer's filter is its own", "pixel_filter_type", "filter_width"),
     **_told("Lancer spreads samples over the pixel", "use_pixel_jitter"),
-    **_told("Lancer leaves nothing out", "use_camera_cull", "use_distance_cull"),
-    **_told("Lancer keeps images in full size", "texture_limit", "texture_limit_render"),
-    **_told("Lancer keeps images in full size", "texture_resolution", "texture_resolution_render"),
-    **_none("acts where culling is on, which is reported", "camera_cull_margin", "distance_cull_margin"),
-    **_none("acts with Fast GI alone, which is reported", "fast_gi_method", "ao_bounces", "ao_bounces_render"),
+    **_followed("leaves objects out", "use_camera_cull", "use_distance_cull", "camera_cull_margin", "distance_cull_margin"),
+    **_followed("makes images smaller", "texture_limit_render", "texture_resolution_render"),
+    **_none("makes images smaller in views alone", "texture_limit", "texture_resolution"),
     **_none(
         "changes noise and time; Lancer's own setting stands for it, and Take Over Cycles' Settings copies it",
         "samples", "preview_samples", "time_limit", "seed", "use_animated_seed", "use_adaptive_sampling", "adaptive_threshold",
@@ -124,12 +123,12 @@ _LAYER = {
 _OBJECT = {
     **_followed("moves the end of light on coarse meshes", "shadow_terminator_geometry_offset", before=(4, 5)),
     **_told("Lancer has the geometry offset alone", "shadow_terminator_offset", before=(4, 5)),
-    **_told("Lancer leaves nothing out", "use_camera_cull", "use_distance_cull"),
+    **_followed("leaves the object out", "use_camera_cull", "use_distance_cull"),
     **_followed(_SUBDIVISION, "use_adaptive_subdivision", "dicing_rate", before=(5, 0)),
     **_told("Lancer has the caustics that paths find", "is_caustics_receiver"),
     **_none(_CAUSTICS, "is_caustics_caster"),
     **_followed(_MOTION, "use_motion_blur", "use_deform_motion", "motion_steps"),
-    **_none("acts with Fast GI alone, which is reported", "ao_distance"),
+    **_followed("ends rays of Fast GI", "ao_distance"),
 }
 
 _LIGHT = {

@@ -18,8 +18,8 @@ _GAUSSIAN_WIDTH = 0.25 / 0.27702
 _FILTERS = {"BOX": "Box", "GAUSSIAN": "Gaussian", "BLACKMAN_HARRIS": "Blackman-Harris"}
 
 
-def check_cycles(scene, messages, in_view=False):
-    """Report a scene's settings. in_view: of a 3D view, which has limits of Simplify of its own."""
+def check_cycles(scene, messages):
+    """Report a scene's settings."""
     # Cycles is an add-on and may be disabled.
     cycles = getattr(scene, "cycles", None)
     if cycles is None:
@@ -28,7 +28,7 @@ def check_cycles(scene, messages, in_view=False):
     if scene.lancer.integrator == "PATH":
         for text, severity in (*_light_paths(scene.lancer, cycles), *_pixel_filter(scene.lancer, cycles)):
             messages.add(f"scene '{scene.name}': {text}", severity=severity)
-    for text in (*_light(cycles), *_simplified(scene, cycles, in_view)):
+    for text in _light(cycles):
         messages.add(f"scene '{scene.name}': {text}")
 
 
@@ -95,28 +95,8 @@ def _listed(words):
 
 
 def _light(cycles):
-    if cycles.use_fast_gi:
-        yield "Cycles' Fast GI Approximation is not supported, light bounces on"
     if getattr(cycles, "use_pixel_jitter", False):
         yield "Cycles' Pixel Jitter is not supported, samples are spread over the pixel"
-
-
-def _simplified(scene, cycles, in_view):
-    render = scene.render
-    if not render.use_simplify:
-        return
-    end = "" if in_view else "_render"
-    for name, title in ((f"texture_limit{end}", "Texture Limit"), (f"texture_resolution{end}", "Texture Resolution")):
-        if name in cycles.bl_rna.properties and _changed(cycles, name):
-            yield f"Simplify's {title} is not supported, pictures are used in full size"
-    # Cycles never culls for stereo and panoramic cameras.
-    camera = scene.camera
-    if render.use_multiview or (camera is not None and camera.type == "CAMERA" and camera.data.type == "PANO"):
-        return
-    for name in ("camera", "distance"):
-        switch = f"use_{name}_cull"
-        if getattr(cycles, switch) and any(getattr(thing.cycles, switch) for thing in scene.objects):
-            yield f"Simplify's {name} culling is not supported, nothing is left out"
 
 
 def _changed(owner, name):

@@ -15,6 +15,7 @@ from .image_sources import has_cached_file, read_all, read_memory
 from .image_state import image_state
 from .missing import is_black, missing
 from .scratch import Scratch, bytes_in_memory
+from .smaller_images import NO_LIMIT, smaller
 
 # Takes the place of an image that is not used any more, until another one gets its number.
 _NOTHING = snapshot.Image(name="nothing", texels=np.zeros((1, 1, 1), np.uint8))
@@ -34,6 +35,7 @@ class Images:
         self.frame = 1  # of the scene
         self.is_preview = False  # whether the images are shown in a preview of a material or a world
         self.texture_cache = None  # the scene's TextureCache
+        self.limit = NO_LIMIT  # of the size of images
         self.watches = watches
         self._states = {}  # image_state() by the keys of _ranges
         self.digests = {}  # of image_state(); to be emptied where a script may have packed other files
@@ -52,7 +54,7 @@ class Images:
         """
         seen = shown(image, user, self.frame)
         has_mipmaps = not self.is_preview and has_cached_file(self.texture_cache, image, seen)
-        key = (identity(image), image.colorspace_settings.name, image.alpha_mode, seen, has_mipmaps)
+        key = (identity(image), image.colorspace_settings.name, image.alpha_mode, seen, has_mipmaps, self.limit)
         if key not in self._ranges:
             if self.watches:
                 self._states[key] = self._state(image, seen)
@@ -62,7 +64,7 @@ class Images:
                 if self.is_preview and image.source == "FILE" and image.is_dirty:
                     read = self._reader(read_memory, in_memory)
                 elif self._kept is not None:
-                    read = self._kept.pictures(read, has_mipmaps)
+                    read = self._kept.pictures(read, (has_mipmaps, self.limit))
                 pictures = read(image, seen, tell)
             if not pictures:
                 self._lost.add(key)
@@ -79,7 +81,8 @@ class Images:
         """Return a function like read(image, seen, tell) that returns a list, with texels beyond the limit in a file."""
 
         def made(*arguments):
-            return (picture.replaced(mipmaps=1) if has_mipmaps else picture for picture in read(*arguments))
+            pictures = (smaller(picture, self.limit) for picture in read(*arguments))
+            return (picture.replaced(mipmaps=1) if has_mipmaps else picture for picture in pictures)
 
         if in_memory:
             return lambda *arguments: list(made(*arguments))

@@ -11,6 +11,7 @@ from ..bindings.numbered_pass import MATTES, NumberedPass
 from ..bindings.snapshot import InstanceTable
 from ..messages.severity import Severity
 from .apart import read_infos
+from .culling import EVERY_RAY
 from .lights import export_lamp_nodes, export_light
 from .mattes import ids
 from .object_attributes import LAMPS_ARE_OBJECTS, AttributeReader, read_object_attributes
@@ -85,12 +86,14 @@ class Instances:
     There may be millions of entries: only numbers are stored for each, and all matrices are read in one call.
     """
 
-    def __init__(self, depsgraph, materials, messages, shaders, divider, linking, options):
+    def __init__(self, depsgraph, materials, messages, shaders, divider, linking, culling, options):
         """shaders: the ShaderCache of lamps. divider: a subdivision.Divider. linking: the LightLinking.
 
-        options: the ExportOptions.
+        culling: the Culling. options: the ExportOptions.
         """
         self._linking = linking
+        self._culling = culling
+        self._boxes = []  # (switches, box) of rows that may be culled, with their numbers
         self.depsgraph = depsgraph
         self.messages = messages
         self.lights = []
@@ -119,6 +122,11 @@ class Instances:
     @property
     def meshes(self):
         return self._objects.meshes
+
+    @property
+    def culls(self):
+        """Whether places decide which objects rays meet."""
+        return bool(self._boxes)
 
     def collect(self, poll):
         shows_surfaces = self.depsgraph.view_layer.use_solid
@@ -182,6 +190,12 @@ class Instances:
         )
         matrices = self.places.matrices(self.depsgraph)
         poll()
+        hidden = column([look.hidden for look in looks])
+        if self._boxes:
+            hidden[self._culled(row_of, matrices)] = EVERY_RAY
+        fast = None
+        if any(look.fast_distance for look in looks):
+            fast = column([look.fast_distance for look in looks], np.float32)
         links = None
         if any(any(look.links) for look in looks):
             links = np.array([look.links for look in looks], np.uint64)[look_of]
@@ -205,7 +219,7 @@ class Instances:
             slot_counts=column([len(look.slots) for look in looks]),
             object_indices=column([look.index for look in looks]),
             shadings=column([look.shading for look in looks]),
-            hidden_from=column([look.hidden for look in looks]),
+            hidden_from=hidden,
             flags=column([look.flags for look in looks]),
             terminators=column([look.terminator for look in looks], np.float32),
             name_indices=row_of,
@@ -213,7 +227,17 @@ class Instances:
             slots=slots,
             infos=infos,
             links=links,
+            fast_distances=fast,
         )
+
+    def _culled(self, row_of, matrices):
+        """Return the numbers of the table's rows whose objects are culled."""
+        numbers, switches, boxes = (np.array(values) for values in zip(*self._boxes, strict=True))
+        place = np.full(len(self._names), -1)
+        place[numbers] = np.arange(len(numbers))
+        rows = np.flatnonzero(place[row_of] >= 0)
+        of = place[row_of[rows]]
+        return rows[self._culling.culled(switches[of], boxes[of], matrices[rows])]
 
     def _attributes(self, look_of, entries, poll):
         materials = self._objects.materials
@@ -246,6 +270,8 @@ class Instances:
         self._names.append(name)
         if PassKind.ASSET_MATTES in self._mattes:
             self._assets.append(_top_parent(owner).name)
+        if switches := self._culling.switches(owner):
+            self._boxes.append((len(self._names) - 1, switches, np.array(thing.bound_box)))
         # To Cycles an object that has materials of its own shares its mesh with its instances alone.
         is_own = any(slot.link == "OBJECT" for slot in owner.material_slots)
         key = data_key, original_key if is_own else None

@@ -45,6 +45,7 @@ class Look(NamedTuple):
     flags: int  # InstanceFlag bits
     terminator: float
     links: Links
+    fast_distance: float  # of Fast GI; 0 for the world's
     placement: int  # of Objects.placements; -1 for none
     light_group: int  # 0 for none
 
@@ -144,7 +145,8 @@ class Objects:
             self._tell_empty(name, materials, used)
         index, shading = max(0, thing.pass_index), Shading[own.shading]
         group = self.groups.get(owner.lightgroup, 0) if self.groups else 0
-        look = Look(kind, mesh, slots, index, shading, *sight, _terminator(owner), links, placement, group)
+        fast = _fast_distance(owner)
+        look = Look(kind, mesh, slots, index, shading, *sight, _terminator(owner), links, fast, placement, group)
         number = self._numbers.setdefault(look, len(self.looks))
         if number == len(self.looks):
             self.looks.append(look)
@@ -288,6 +290,11 @@ def _slot_materials(thing):
 def _terminator(thing):
     """Return Blender's geometry offset of the shadow terminator."""
     return float(getattr(thing if _HAS_TERMINATOR else getattr(thing, "cycles", None), _TERMINATOR, 0.1))
+
+
+def _fast_distance(thing):
+    """Return the distance of Fast GI of an object; 0 for that of the world."""
+    return float(getattr(getattr(thing, "cycles", None), "ao_distance", 0.0))
 
 
 def _placement(kind, positions):

@@ -8,6 +8,7 @@ from ..bindings.session import Cancelled
 from ..bindings.snapshot import SceneSnapshot
 from ..messages.messages import Messages
 from .camera import export_camera
+from .culling import Culling
 from .even_normals import with_even_normals
 from .flat import report_flat
 from .images import Images
@@ -20,6 +21,7 @@ from .outputs import rendered_aovs
 from .scene_state import scene_state
 from .settings import export_settings, world_of
 from .shader_cache import ShaderCache
+from .smaller_images import size_limit
 from .subdivision.divider import Divider
 from .texture_cache import texture_cache
 from .unsupported import check_passes, check_scene, check_view_layer
@@ -74,15 +76,16 @@ def export_scene(depsgraph, options=None, poll=None):
     world = world_of(depsgraph)
     # The view layer refers to original data without animation: use the evaluated copy.
     override = view_layer.material_override and view_layer.material_override.evaluated_get(depsgraph)
-    settings = export_settings(depsgraph, options.passes, world, messages)
-    check_scene(scene, messages, in_view=options.view is not None)
+    in_view = options.view is not None
+    settings = export_settings(depsgraph, options.passes, world, messages, in_view)
+    check_scene(scene, messages)
     check_passes(scene, options.passes, messages)
     check_view_layer(scene, view_layer, messages)
     linking = read_linking(depsgraph, messages)
     parts, cache = options.parts, texture_cache(scene)
     if parts is not None:
         parts.read_by(cache)
-        state = scene_state(depsgraph), linking, options.sight, messages.lines()
+        state = scene_state(depsgraph), linking, options.sight, messages.lines(), size_limit(scene, in_view)
         again = parts.begin(depsgraph, state, obey)
         if again is not None:
             # The messages of the last export include those of the checks above, which have not changed.
@@ -91,13 +94,13 @@ def export_scene(depsgraph, options=None, poll=None):
     images = parts.images if parts is not None else options.shaders.images if options.shaders else Images(obey, options.kept)
     images.obey = obey
     images.frame, images.is_preview, images.texture_cache = scene.frame_current, options.is_preview, cache
+    images.limit = size_limit(scene, in_view)
     shaders = parts.shaders if parts is not None else options.shaders or ShaderCache(images)
     materials = Materials(messages, override, images, depsgraph, shaders)
-    in_view = options.view is not None
     divider = Divider(depsgraph, options.dicing if in_view else camera, messages, in_view)
     aovs = rendered_aovs(view_layer, options.passes)
     materials.aovs = aovs
-    instances = Instances(depsgraph, materials, messages, shaders, divider, linking, options)
+    instances = Instances(depsgraph, materials, messages, shaders, divider, linking, Culling(scene, camera), options)
     instances.collect(obey)
 
     def read_sky(messages, images, value):
@@ -119,7 +122,7 @@ def export_scene(depsgraph, options=None, poll=None):
         snapshot = read_motion(at_middle, depsgraph, options.camera or scene.camera, instances.places, options, messages, obey)
     if parts is not None:
         # The instance of a lamp moves with its instancer; the places of object and camera decide how a mesh is divided.
-        moves_freely = not (instances.has_lamp_instances or divider.depends_on_places)
+        moves_freely = not (instances.has_lamp_instances or divider.depends_on_places or instances.culls)
         parts.end(snapshot, messages, instances.places if moves_freely else None, instances.geometries, state)
     return _placed(snapshot, instances.geometries, messages, options, camera, settings), messages
 

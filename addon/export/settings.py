@@ -38,10 +38,10 @@ def _of_cycles(scene):
     }
 
 
-def export_settings(depsgraph, passes, world, messages):
+def export_settings(depsgraph, passes, world, messages, in_view=False):
     """Return the snapshot.Settings of a depsgraph. world: the layer's evaluated world, or None.
 
-    passes: of enums.Pass, and NumberedPasses.
+    passes: of enums.Pass, and NumberedPasses. in_view: of a 3D view.
     """
     scene = depsgraph.scene
     own = scene.lancer
@@ -66,6 +66,7 @@ def export_settings(depsgraph, passes, world, messages):
         transmission_bounces=own.transmission_bounces,
         filter_glossy=own.filter_glossy,
         **_of_cycles(scene),
+        **_fast(scene, world, in_view),
         contribution_threshold=own.contribution_threshold,
         clamp_indirect=own.clamp_indirect,
         split_lights=0,
@@ -92,6 +93,19 @@ def export_settings(depsgraph, passes, world, messages):
         # A layer with another world keeps the mist of the scene's, as in Cycles.
         **_mist(scene.world and scene.world.evaluated_get(depsgraph), messages),
     )
+
+
+def _fast(scene, world, in_view):
+    """Return the settings of Cycles' Fast GI Approximation, whose strength and distance are the world's."""
+    cycles = getattr(scene, "cycles", None)
+    if cycles is None or world is None or not cycles.use_fast_gi:
+        return {}
+    light = world.light_settings
+    if cycles.fast_gi_method == "ADD":
+        return {"ambient": light.ao_factor, "fast_distance": light.distance}
+    # Without a strength Cycles keeps the bounces.
+    bounces = (cycles.ao_bounces if in_view else cycles.ao_bounces_render) if light.ao_factor > 0.0 else 0
+    return {"fast_bounces": bounces, "fast_factor": light.ao_factor, "fast_distance": light.distance}
 
 
 def world_of(depsgraph):

@@ -33,11 +33,9 @@ _HAS_CATCHER = "is_shadow_catcher" in _OF_OBJECTS
 _HAS_OFFSET = "shadow_terminator_shading_offset" in _OF_OBJECTS
 
 
-def check_scene(scene, messages, in_view=False):
+def check_scene(scene, messages):
     who = f"scene '{scene.name}'"
-    if scene.render.use_multiview:
-        messages.add(f"{who}: stereoscopy is not supported, every view shows the scene's camera", "feature:stereoscopy")
-    check_cycles(scene, messages, in_view)
+    check_cycles(scene, messages)
 
 
 def check_passes(scene, passes, messages):

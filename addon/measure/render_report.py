@@ -140,6 +140,8 @@ def biases(numbers, settings):
             yield f"{REMOVED[name]} {percent(numbers[name])} of the light: the picture is too dark by this share"
     if settings.filter_glossy > 0.0:
         yield f"filter glossy {settings.filter_glossy:g} blurs light behind blurred reflections: how much is not measured"
+    if settings.fast_bounces or settings.ambient > 0.0:
+        yield "Fast GI replaces or adds bounced light by a guess: how far the picture is off is not measured"
     if settings.integrator == Integrator.PATH:
         missing = numbers["error_missing"]
         if math.isinf(missing):

@@ -86,6 +86,28 @@ class LANCER_OBJECT_PT_light_group(LancerPanel, bpy.types.Panel):
         light_group(self._column(), context.object, context.view_layer)
 
 
+class LANCER_OBJECT_PT_simplify(LancerObjectPanel, bpy.types.Panel):
+    """Settings of Cycles, which Lancer follows."""
+
+    bl_label = "Culling and Fast GI"
+    bl_parent_id = "OBJECT_PT_visibility"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and hasattr(context.object, "cycles")
+
+    def draw(self, context):
+        scene, own = context.scene, context.object.cycles
+        for kind in ("camera", "distance"):
+            column = self._column()
+            column.active = scene.render.use_simplify and getattr(scene.cycles, f"use_{kind}_cull")
+            column.prop(own, f"use_{kind}_cull")
+        column = self._column()
+        column.active = scene.cycles.use_fast_gi
+        column.prop(own, "ao_distance", text="AO Distance")
+
+
 class LANCER_OBJECT_PT_ray_visibility(LancerPanel, bpy.types.Panel):
     bl_label = "Ray Visibility"
     bl_context = "object"
@@ -151,6 +173,7 @@ CLASSES = (
     LANCER_OBJECT_PT_subdivision,
     LANCER_OBJECT_PT_ray_visibility,
     LANCER_OBJECT_PT_light_group,
+    LANCER_OBJECT_PT_simplify,
     LANCER_OBJECT_PT_light_linking,
     LANCER_OBJECT_PT_shadow_linking,
 )

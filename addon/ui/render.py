@@ -21,6 +21,8 @@ _REPLACED = (
     "report differences by them, and how much light each limit removes."
 )
 
+_FAST = "Bounced light is replaced by a guess, or the guess is added to it. How far the picture is off is not measured."
+
 _DENOISING = (
     "Open Image Denoise is a guess and can remove details. Its own error is reported beside that of the picture before "
     "denoising, the pass Noisy Image."
@@ -223,6 +225,34 @@ class LANCER_RENDER_PT_caustics(LancerRenderPanel, bpy.types.Panel):
         draw_biases(column, context, "error_no_caustics")
 
 
+class LANCER_RENDER_PT_fast_gi(LancerRenderPanel, bpy.types.Panel):
+    """Settings of Cycles, which Lancer follows."""
+
+    bl_label = "Fast GI Approximation"
+    bl_parent_id = "LANCER_RENDER_PT_light_paths"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and hasattr(context.scene, "cycles")
+
+    def draw_header(self, context):
+        self.layout.prop(context.scene.cycles, "use_fast_gi", text="")
+
+    def draw(self, context):
+        scene, cycles = context.scene, context.scene.cycles
+        column = self._column()
+        column.active = cycles.use_fast_gi and scene.lancer.integrator == "PATH"
+        column.prop(cycles, "fast_gi_method", text="Method")
+        if scene.world is not None:
+            column.prop(scene.world.light_settings, "ao_factor", text="AO Factor")
+            column.prop(scene.world.light_settings, "distance", text="AO Distance")
+        if cycles.fast_gi_method == "REPLACE":
+            column.prop(cycles, "ao_bounces", text="Viewport Bounces")
+            column.prop(cycles, "ao_bounces_render", text="Render Bounces")
+        sentence(column, context, _FAST)
+
+
 class LANCER_RENDER_PT_classic(LancerRenderPanel, bpy.types.Panel):
     bl_label = "Classic"
     bl_parent_id = "LANCER_RENDER_PT_light_paths"
@@ -258,6 +288,8 @@ class LANCER_RENDER_PT_simplify_viewport(LancerRenderPanel, bpy.types.Panel):
         column.active = render.use_simplify
         column.prop(render, "simplify_subdivision", text="Max Subdivision")
         column.prop(render, "simplify_child_particles", text="Child Particles")
+        for name in ("texture_limit", "texture_resolution"):
+            setting(column, name, getattr(context.scene, "cycles", None))
         setting(column, "use_simplify_normals", render, text="Normals")
 
 
@@ -271,6 +303,30 @@ class LANCER_RENDER_PT_simplify_render(LancerRenderPanel, bpy.types.Panel):
         column.active = render.use_simplify
         column.prop(render, "simplify_subdivision_render", text="Max Subdivision")
         column.prop(render, "simplify_child_particles_render", text="Child Particles")
+        for name in ("texture_limit_render", "texture_resolution_render"):
+            setting(column, name, getattr(context.scene, "cycles", None))
+
+
+class LANCER_RENDER_PT_simplify_culling(LancerRenderPanel, bpy.types.Panel):
+    """Settings of Cycles, which Lancer follows."""
+
+    bl_label = "Culling"
+    bl_parent_id = "LANCER_RENDER_PT_simplify"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and hasattr(context.scene, "cycles")
+
+    def draw(self, context):
+        cycles = context.scene.cycles
+        column = self._column()
+        column.active = context.scene.render.use_simplify
+        for kind in ("camera", "distance"):
+            column.prop(cycles, f"use_{kind}_cull")
+            row = column.row()
+            row.active = getattr(cycles, f"use_{kind}_cull")
+            row.prop(cycles, f"{kind}_cull_margin", text="Margin" if kind == "camera" else "Distance")
 
 
 class LANCER_RENDER_PT_simplify_strokes(LancerRenderPanel, GreasePencilSimplifyPanel, bpy.types.Panel):
@@ -414,10 +470,12 @@ CLASSES = (
     LANCER_RENDER_PT_max_bounces,
     LANCER_RENDER_PT_clamping,
     LANCER_RENDER_PT_caustics,
+    LANCER_RENDER_PT_fast_gi,
     LANCER_RENDER_PT_classic,
     LANCER_RENDER_PT_simplify,
     LANCER_RENDER_PT_simplify_viewport,
     LANCER_RENDER_PT_simplify_render,
+    LANCER_RENDER_PT_simplify_culling,
     LANCER_RENDER_PT_simplify_strokes,
     LANCER_RENDER_PT_subdivision,
     *motion.RENDER_CLASSES,

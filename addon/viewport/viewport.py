@@ -13,7 +13,7 @@ from ..bindings.enums import Pass
 from ..denoise import view_layer as denoise
 from ..export.parts import Parts
 from ..export.scene import ExportOptions, export_scene
-from ..export.settings import export_settings
+from ..export.settings import export_settings, world_of
 from ..export.view import export_view
 from ..host import redraw
 from ..host.by_scene import ByScene
@@ -148,7 +148,7 @@ class Viewport:
     def _want(self, engine, depsgraph, view):
         own = depsgraph.scene.lancer
         # Blender sends no update for properties of add-ons: read them at each redraw.
-        settings = export_settings(depsgraph, (Pass.COMBINED,), None, Messages())
+        settings = export_settings(depsgraph, (Pass.COMBINED,), world_of(depsgraph), Messages(), in_view=True)
         self._set_contents(self._contents, settings)
         settings = settings.replaced(
             samples=own.preview_samples or _MANY, target_error=0.0, time_limit=0.0, split_lights=1, split_paths=1

@@ -156,7 +156,7 @@ BLENDERS_OWN = {
     "object of a light": {"OBJECT_PT_visibility"},
     "output": {"RENDER_PT_format", "RENDER_PT_output", "RENDER_PT_post_processing"},
 }
-WITHOUT_EFFECT = ("stereoscopy", "output_views", "freestyle", "linking", "eevee", "volume", "hair")
+WITHOUT_EFFECT = ("freestyle", "eevee", "volume", "hair")
 
 
 @both

@@ -37,7 +37,6 @@ UNSUPPORTED = [
     ["view layer", "Vector"],
     ["view layer", "Freestyle"],
     ["object 'Cube'", "shadow catcher"],
-    ["film exposure", "2"],
 ]
 DARK = {"empty_scene", "no_world_no_light"}
 

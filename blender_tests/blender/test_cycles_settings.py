@@ -55,6 +55,8 @@ def test_settings_are_taken_over_and_the_button_goes(found):
     assert got["result"] == ["FINISHED"] and got["kept"]
     wanted = {
         "samples": 77, "target_error": 0.06, "time_limit": 9.0, "seed": 5, "use_animated_seed": True, "max_bounces": 7,
+        # A limit of glossy bounces beyond the total has no effect.
+        "diffuse_bounces": 2, "glossy_bounces": 1024, "transmission_bounces": 3, "filter_glossy": 0.5,
         # Lancer's own limit.
         "transparent_bounces": 1023, "clamp_indirect": 3.5, "pixel_filter": "BLACKMAN_HARRIS",
         # The Blackman-Harris window that is as wide as Cycles' Gaussian, by their standard deviations.

@@ -19,7 +19,7 @@ def judged(tmp_path_factory):
 def test_a_message_is_asked_for_and_excuses_nothing(judged):
     assert judged["announced, equal"] == ["pass", ""]
     assert judged["announced, different"][0] == "fail"
-    assert judged["not announced, equal"] == ["fail", "no message says 'film exposure'"]
+    assert judged["not announced, equal"] == ["fail", "no message says 'Pixel Jitter'"]
 
 
 def test_a_pass_that_is_not_written_is_an_error(judged):

@@ -197,8 +197,10 @@ typedef struct lancer_instance {
                             normals describe, as with Blender's shadow terminator offset; 0 = on the triangle */
   uint32_t receiver_set; /* light linking: its set as a receiver, 0 ... 63 */
   uint32_t blocker_set;  /* its set as a blocker, 0 ... 63 */
-  uint64_t unlit_sets;   /* of an emitter: bits of the sets of receivers that its light does not reach */
-  uint64_t clear_sets;   /* of an emitter: bits of the sets of blockers that its light passes */
+  float fast_distance;   /* replaces that of the settings for rays that leave it; 0 = does not */
+  uint32_t reserved;
+  uint64_t unlit_sets; /* of an emitter: bits of the sets of receivers that its light does not reach */
+  uint64_t clear_sets; /* of an emitter: bits of the sets of blockers that its light passes */
 } lancer_instance;
 
 /* ---- images ----------------------------------------------------------------------------------------------------- */
@@ -1026,6 +1028,11 @@ typedef struct lancer_camera {
   double focal_distance;       /* along z, > 0 where lens_radius > 0; panoramas: along the ray */
   double aperture_rotation;    /* of the blades, radians */
   double aperture_ratio;       /* height of the bokeh over its width; 1 = round */
+  /* Spherical stereo, of panoramas and PERSPECTIVE: the eye is to the right of each ray by eye_offset, about the camera's y
+   * axis, or the world's z axis if PERSPECTIVE; 0 = off. Both eyes' rays meet at convergence_distance; 0 = they are parallel.
+   * From pole_merge_from to pole_merge_to above or below the horizon the offset fades to 0; pole_merge_to of 0 = it does not.
+   */
+  double eye_offset, convergence_distance, pole_merge_from, pole_merge_to;
 } lancer_camera;
 
 /* Motion while the shutter is open. Time runs from 0, where it opens, to 1, where it closes. Things that move are given at
@@ -1131,6 +1138,13 @@ typedef struct lancer_settings {
   float filter_glossy;       /* [amount 0] PATH: after scatterings of a density p below this, glossy lobes have at least the
                                 alpha sqrt(1 - p / filter_glossy) / 2 */
   float exposure;            /* [amount 1] factor of all light in the film */
+  uint32_t fast_bounces;     /* [number 0 1024] PATH: a path with more scatterings than this less 1, not counting transmissions
+                                and one glossy reflection, ends at the first surface within fast_distance, or sees the
+                                environment times fast_factor; 0 = off */
+  float fast_factor;         /* [amount 1] */
+  float fast_distance;       /* [amount 0] 0 = unlimited */
+  float ambient;             /* [amount 0] PATH: white light from everywhere that diffuse lobes reflect where nothing within
+                                fast_distance hides them; in the picture alone, not in passes of its parts */
   uint32_t split_lights;     /* [number 1 16] PATH: number of lights sampled per sample at its first surface with a lobe
                                 that is not a single direction. 0, as split_paths: chosen by rendering a few pixels before
                                 the first sample, if at least 16 samples are planned */

@@ -123,7 +123,7 @@ inline lancer_settings make_settings(uint32_t integrator = LANCER_PATH) {
   settings.samples = 8;
   settings.max_bounces = 6;
   settings.diffuse_bounces = settings.glossy_bounces = settings.transmission_bounces = 1024;
-  settings.exposure = 1.0f;
+  settings.exposure = settings.fast_factor = 1.0f;
   settings.transparent_bounces = settings.transparent_shadows = 8;
   settings.alpha_threshold = 0.5f;
   settings.pixel_filter = LANCER_FILTER_BLACKMAN_HARRIS;

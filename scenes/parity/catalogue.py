@@ -51,6 +51,7 @@ SUBJECTS = (
     "subdivisions_inputs",
     "films",
     "light_paths",
+    "fast_gi",
     "passes_light",
     "passes_data",
     "passes_chosen",
@@ -82,6 +83,7 @@ class Case:
     announced: str = ""  # words that one of Lancer's messages must contain; they excuse no difference
     exposure: float = 1.0  # of the film
     limited: dict = field(default_factory=dict)  # settings of Cycles that limit light; Lancer gets the same
+    simplify: bool = False  # whether Simplify is on
     quick: bool = False  # belongs to the subset of `make test`
 
     @property

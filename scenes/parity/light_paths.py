@@ -6,7 +6,7 @@ from .nodes import shader
 from .stages import ball, camera, floor, lamp, sky
 
 
-def _room(scene, *materials):
+def room(scene, *materials):
     """Balls of the materials between two matt walls under a large lamp: light of many bounces."""
     floor(scene)
     wall = shader("ShaderNodeBsdfDiffuse", Color=(0.8, 0.5, 0.4))
@@ -24,11 +24,11 @@ def _matt():
     return shader("ShaderNodeBsdfDiffuse", Color=(0.3, 0.5, 0.75))
 
 
-def _glossy(roughness=0.3):
+def glossy(roughness=0.3):
     return shader("ShaderNodeBsdfGlossy", Color=(0.8, 0.8, 0.8), Roughness=roughness)
 
 
-def _glass(roughness=0.2):
+def glass(roughness=0.2):
     return shader("ShaderNodeBsdfGlass", Color=(0.9, 1.0, 0.9), Roughness=roughness, IOR=1.45)
 
 
@@ -45,39 +45,38 @@ def _glass(roughness=0.2):
     bounces=4,
 )
 def bounces_by_kind(scene, _limit):
-    _room(scene, _glossy(), _glass())
+    room(scene, glossy(), glass())
 
 
 @case("LOBES", bounces=4, limited={"diffuse_bounces": 2, "glossy_bounces": 1, "transmission_bounces": 1})
 def bounces_of_all_kinds(scene):
     """With a transparent veil, which a path that has ended passes."""
     mixed = shader("ShaderNodeBsdfPrincipled", Base_Color=(0.3, 0.5, 0.75), Roughness=0.3, Alpha=0.5)
-    _room(scene, mixed, _glass(0.05))
+    room(scene, mixed, glass(0.05))
 
 
 @variants(values={"0": 0, "1": 1}, bounces=3)
 def lamp_bounces(scene, limit):
     """A lamp that lights the first surfaces of paths alone; rays that run into it find it at any bounce."""
-    _room(scene, _matt())
+    room(scene, _matt())
     scene.objects["Lamp"].data.cycles.max_bounces = limit
 
 
 @case(bounces=3)
 def sky_bounces(scene):
-    _room(scene, _matt())
+    room(scene, _matt())
     scene.world.cycles.max_bounces = 0
 
 
 @variants(
-    values={"low": (0.2, {"limited": {"sample_clamp_direct": 0.2}}), "high": (2.0, {"limited": {"sample_clamp_direct": 2.0}})},
+    values={"low": (0.3, {"limited": {"sample_clamp_direct": 0.3}}), "high": (2.0, {"limited": {"sample_clamp_direct": 2.0}})},
     bounces=0,
 )
 def clamp_direct(scene, _limit):
-    """A small lamp near a floor, before a glowing wall: contributions are clamped one by one."""
+    """A small lamp near a floor: contributions are clamped one by one, so the choice among several would show."""
     floor(scene)
-    glow = shader("ShaderNodeEmission", Color=(1.0, 0.5, 0.2), Strength=3.0)
-    parts.place(scene, "Glow", parts.plane_mesh("Glow", 1.0), glow, (-1.0, 1.5, 0.6), rotation=(1.5708, 0, 0))
     parts.add_light(scene, "Light", "POINT", 60.0, (0.5, -0.2, 0.8), shadow_soft_size=0.2)
+    sky(scene, strength=1.0)
     camera(scene)
 
 
@@ -93,7 +92,7 @@ def clamp_direct(scene, _limit):
 def caustics_off(scene, _which):
     """Principled, metallic and glass balls before matt walls: their light on the walls is left out, their own look stays."""
     plastic = shader("ShaderNodeBsdfPrincipled", Base_Color=(0.6, 0.3, 0.2), Roughness=0.25, Metallic=0.3)
-    _room(scene, plastic, _glass())
+    room(scene, plastic, glass())
 
 
 @variants(
@@ -102,4 +101,4 @@ def caustics_off(scene, _which):
     bounces=3,
 )
 def filter_glossy(scene, _value):
-    _room(scene, _glossy(0.05), _glass(0.0))
+    room(scene, glossy(0.05), glass(0.0))

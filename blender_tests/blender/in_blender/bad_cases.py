@@ -177,7 +177,6 @@ def unsupported_features():
         sets.remove(lines)
     # A shadow catcher.
     cube.is_shadow_catcher = True
-    scene.cycles.film_exposure = 2.0
     return _outcome()
 
 

@@ -11,6 +11,7 @@ import stage
 from addon.bindings.abi import LancerError
 from addon.denoise import view_layer as denoise
 from addon.engine.passes import render_passes, sources
+from addon.export.culling import EVERY_RAY
 from addon.export.moving_scene import export_picture
 from addon.export.scene import ExportOptions
 from addon.export.shutter import shutter_of
@@ -136,6 +137,9 @@ def _textured():
     tree.links.new(moved.outputs[0], output.inputs["Displacement"])
     glow, veil = tree.nodes.new("ShaderNodeEmission"), tree.nodes.new("ShaderNodeBsdfTransparent")
     glow.inputs["Strength"].default_value = 10.0
+    large = tree.nodes.new("ShaderNodeTexImage")
+    large.image = bpy.data.images.new("Large", 256, 2)
+    tree.links.new(large.outputs["Color"], glow.inputs["Color"])
     bodies = [next(node for node in tree.nodes if node.type == "BSDF_DIFFUSE"), veil]
     for body in bodies:
         added = tree.nodes.new("ShaderNodeAddShader")
@@ -218,6 +222,7 @@ class _Stage:
         if hasattr(world, "cycles"):
             world.cycles.sampling_method = "MANUAL"
             yield now(world.cycles)
+        yield from self._of_fast_gi_and_culling(now)
         yield from self._of_subdivision(now)
         self.cube.lancer.shape = "SPHERE"
         yield now(self.cube.lancer)
@@ -258,6 +263,30 @@ class _Stage:
         scene.render.use_motion_blur = False
         cube.shape_key_clear()
         cube.animation_data_clear()
+
+    def _of_fast_gi_and_culling(self, now):
+        cycles = getattr(self.scene, "cycles", None)
+        if cycles is None:
+            return
+        cycles.use_fast_gi = True
+        yield now(cycles, self.world.light_settings, self.cube.cycles)
+        cycles.use_fast_gi = False
+        # A cube just beside the picture, just beyond the distance.
+        place = self.cube.location.copy()
+        cycles.use_camera_cull = self.cube.cycles.use_camera_cull = True
+        cycles.camera_cull_margin = 0.0
+        while not self._is_culled():
+            self.cube.location.x += 0.1
+        yield now(cycles, self.cube.cycles)
+        cycles.use_camera_cull, cycles.use_distance_cull, self.cube.cycles.use_distance_cull = False, True, True
+        cycles.distance_cull_margin = 0.9 * ((self.cube.location - self.camera.location).length - 2.0)
+        yield now(cycles, self.cube.cycles)
+        cycles.use_distance_cull = False
+        self.cube.location = place
+
+    def _is_culled(self):
+        (snapshot, _, _), _ = exported(self.scene, self.layer)
+        return bool((snapshot.instances.hidden_from == EVERY_RAY).any())
 
     def _of_materials(self):
         material = self.material

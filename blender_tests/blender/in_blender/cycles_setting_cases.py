@@ -116,12 +116,14 @@ def _glass():
 # Other values than both engines start with.
 _THEIRS = {
     "samples": 77, "adaptive_threshold": 0.02, "time_limit": 9.0, "seed": 5, "use_animated_seed": True, "max_bounces": 7,
+    "diffuse_bounces": 2, "glossy_bounces": 9, "transmission_bounces": 3, "blur_glossy": 0.5,
     "transparent_max_bounces": 1024, "sample_clamp_indirect": 3.5, "pixel_filter_type": "GAUSSIAN", "filter_width": 2.0,
     "preview_samples": 33, "film_transparent_glass": True, "film_transparent_roughness": 0.25,
 }  # fmt: skip
 _OURS = (
-    "samples", "target_error", "time_limit", "seed", "use_animated_seed", "max_bounces", "transparent_bounces",
-    "clamp_indirect", "pixel_filter", "filter_width", "preview_samples", "use_denoising", "use_preview_denoising",
+    "samples", "target_error", "time_limit", "seed", "use_animated_seed", "max_bounces", "diffuse_bounces",
+    "glossy_bounces", "transmission_bounces", "filter_glossy", "transparent_bounces", "clamp_indirect", "pixel_filter",
+    "filter_width", "preview_samples", "use_denoising", "use_preview_denoising",
 )  # fmt: skip
 
 

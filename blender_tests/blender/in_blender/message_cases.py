@@ -108,11 +108,9 @@ def left_out():
         _show(material.node_tree, kinds, "OutputMaterial")
         stage.cube(material=material)
     lamp = stage.light().data
-    lamp.cycles.max_bounces = 3
     if hasattr(lamp, "use_custom_distance"):
         lamp.use_custom_distance = True
     world = stage.sky()
-    world.cycles.max_bounces = 4
     _show(world.node_tree, ("Background", "VolumeScatter"), "OutputWorld")
     scene.world = world
     return {"version": list(bpy.app.version), "told": export_told()[1].lines()}

@@ -75,7 +75,7 @@ def _contests():
     def black(seed):
         return {"Combined": 0.0 * _GREY}
 
-    announced = {"announced": "film exposure"}
+    announced = {"announced": "Pixel Jitter"}
     data = {"kind_name": "PIXELS", "passes": ("Mist",)}
     return (
         ("announced, equal", {**announced, "build": _tell}, grey, grey, False),
@@ -98,7 +98,7 @@ def _contests():
 
 
 def _tell(scene):
-    engine.last_messages[scene.name] = ["scene 'Scene': Cycles' film exposure (2) is not supported"]
+    engine.last_messages[scene.name] = ["scene 'Scene': Cycles' Pixel Jitter is not supported"]
 
 
 def _raise(scene):
@@ -142,7 +142,7 @@ def _arithmetic():
 
 def _page():
     with tempfile.TemporaryDirectory() as folder:
-        different = {"announced": "film exposure"}
+        different = {"announced": "Pixel Jitter"}
         outcomes = [
             _contest(folder, "shown", different, lambda _: {"Combined": 1.5 * _GREY}, lambda _: {"Combined": _GREY}),
             _contest(folder, "hidden", {"since": (99, 0)}, None, None),

@@ -5,11 +5,6 @@ import stage
 
 # Each of these differs from Lancer's own setting, and its message has this word.
 _SETTINGS = {
-    "film_exposure": (2.0, "exposure"),
-    "use_fast_gi": (True, "Fast GI"),
-    "sample_clamp_direct": (1.0, "Clamp Direct"),
-    "caustics_reflective": (False, "reflective caustics"),
-    "caustics_refractive": (False, "refractive caustics"),
     "blur_glossy": (2.0, "Filter Glossy 2"),
     "diffuse_bounces": (0, "Diffuse 0"),
     "glossy_bounces": (1, "Glossy 1"),
@@ -23,6 +18,8 @@ _NEUTRAL = {
     "samples": 7, "seed": 5, "volume_bounces": 3, "diffuse_bounces": 64, "glossy_bounces": 12,
     "use_adaptive_sampling": False, "light_sampling_threshold": 0.1,
     "min_light_bounces": 3, "use_camera_cull": True, "texture_limit_render": "128", "ao_bounces_render": 3,
+    "film_exposure": 2.0, "use_fast_gi": True, "sample_clamp_direct": 1.0, "caustics_reflective": False,
+    "caustics_refractive": False,
 }  # fmt: skip
 
 
@@ -45,6 +42,7 @@ _LIGHT_PATHS = {
     "same clamp": ({}, {"clamp_indirect": 10.0}),
     "own clamp": ({}, {"clamp_indirect": 2.5}),
     "clamped here alone": ({"sample_clamp_indirect": 0.0}, {"clamp_indirect": 2.5}),
+    "same kinds": ({}, {"diffuse_bounces": 4, "glossy_bounces": 4, "filter_glossy": 1.0}),
     "classic": ({}, {"integrator": "CLASSIC"}),
     "normals": ({}, {"integrator": "NORMALS"}),
 }
@@ -85,21 +83,6 @@ def settings():
         setattr(cycles, name, value)
         result["words"][word] = told()
         setattr(cycles, name, start)
-    render, cube = bpy.context.scene.render, bpy.data.objects["Cube"]
-    render.use_simplify = True
-    result["simplify"] = told()
-    for switch in ("use_camera_cull", "use_distance_cull"):
-        setattr(cycles, switch, True)
-        result["nobody culled"] = told()
-        setattr(cube.cycles, switch, True)
-        result["words"][switch.split("_")[1] + " culling"] = told()
-        setattr(cycles, switch, False)
-    bpy.context.scene.camera.data.type = "PANO"
-    cycles.use_camera_cull = True
-    result["panorama"] = told()
-    cycles.use_camera_cull = False
-    cycles.texture_limit_render = "256"
-    result["words"]["Texture Limit"] = told()
     return result
 
 

@@ -48,7 +48,7 @@ def unbias(scene, case, samples, seed):
     scene.render.resolution_x, scene.render.resolution_y = case.size
     scene.render.resolution_percentage = 100
     scene.render.use_compositing = scene.render.use_sequencer = False
-    scene.render.use_simplify = False
+    scene.render.use_simplify = case.simplify
     layer = bpy.context.view_layer
     # 0: the scene's number of samples.
     layer.samples = 0

@@ -33,6 +33,10 @@ enum class Pass : uint32_t {
   X(Switch, no_refractions, false, 0xffffffffu)                                                                                \
   X(Amount, filter_glossy, 0.0f, 0xffffffffu)                                                                                  \
   X(Amount, exposure, 1.0f, 0xffffffffu)                                                                                       \
+  X(Number, fast_bounces, 0u, 1024u)                                                                                           \
+  X(Amount, fast_factor, 1.0f, 0xffffffffu)                                                                                    \
+  X(Amount, fast_distance, 0.0f, 0xffffffffu)                                                                                  \
+  X(Amount, ambient, 0.0f, 0xffffffffu)                                                                                        \
   X(Number, split_lights, 1u, 16u)                                                                                             \
   X(Number, split_paths, 1u, 16u)                                                                                              \
   X(Choice, pixel_filter, 0u, 1u)                                                                                              \

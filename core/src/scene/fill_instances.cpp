@@ -147,6 +147,7 @@ void add_instances(Description &description, uint32_t count, const lancer_instan
     instance.receiver_set = given.receiver_set;
     instance.blocker_set = given.blocker_set;
     instance.links = {given.unlit_sets, given.clear_sets};
+    instance.fast_distance = given.fast_distance > 0.0f ? double(given.fast_distance) : 0.0;
     description.instances.push_back(std::move(instance));
   }
   description.instances_given += count;

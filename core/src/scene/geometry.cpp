@@ -71,7 +71,7 @@ bool Instance::same(const Instance &other) const {
          light_group == other.light_group && hidden_from == other.hidden_from && holdout == other.holdout &&
          bits(terminator, other.terminator) && number == other.number && bits(flat_axis, other.flat_axis) &&
          receiver_set == other.receiver_set && blocker_set == other.blocker_set && links == other.links &&
-         first_key == other.first_key && key_count == other.key_count;
+         fast_distance == other.fast_distance && first_key == other.first_key && key_count == other.key_count;
 }
 
 MeshAttribute &Mesh::add_attribute(uint32_t attribute, Domain domain, uint32_t channels) {

@@ -146,6 +146,7 @@ struct Instance {
   glm::dvec3 flat_axis{0.0}; // object space, unit: the direction that a flattening placement loses; else 0
   uint32_t receiver_set = 0, blocker_set = 0;
   LightLinks links;                      // of the light that it emits
+  double fast_distance = 0.0;            // see lancer_instance; user's units
   uint32_t first_key = 0, key_count = 0; // of the geometry's keys; 0: the instance stands still
 
   // Places the shape; the map must be invertible.

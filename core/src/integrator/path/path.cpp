@@ -24,8 +24,8 @@ void PathIntegrator::run(std::span<const SampleAddress> addresses, std::span<Sam
     // Keep the light before the last bounces, from which the light beyond them is estimated.
     if (last_bounces_.due(turn))
       last_bounces_.note(
-          turn, queue_.paths.size(), settings_.splits.paths > 1 || walk_, [&](size_t i) { return queue_.paths[i].sample; },
-          gathered);
+          turn, queue_.paths.size(), settings_.splits.paths > 1 || walk_ || haunted_,
+          [&](size_t i) { return queue_.paths[i].sample; }, gathered);
     // Add the light samples that no surface occludes.
     counts_.shadow +=
         shadow_.trace([&](const WaitingLight &waiting, const glm::vec3 &light) { film_.add_lit(waiting, light); });
@@ -177,7 +177,7 @@ void PathIntegrator::add_linked_lights() {
 void PathIntegrator::add_environment() {
   const Environment &environment = scene_.lights.environment();
   for (size_t i = 0; i < missed_.size() && !environment.varies(); ++i)
-    film_.add(queue_.paths[missed_[i]], queue_.paths[missed_[i]].beta * environment.constant(), true,
+    film_.add(queue_.paths[missed_[i]], seen_beta(queue_.paths[missed_[i]]) * environment.constant(), true,
               environment.light_group());
   for (size_t first = 0; first < missed_.size() && environment.varies(); first += kBlockLanes) {
     const auto now = std::span(missed_).subspan(first, std::min<size_t>(kBlockLanes, missed_.size() - first));
@@ -189,7 +189,7 @@ void PathIntegrator::add_environment() {
     met_.look_at_sky(uint32_t(now.size()));
     for (uint32_t lane = 0; lane < now.size(); ++lane) {
       const Path &path = queue_.paths[now[lane]];
-      film_.add(path, path.beta * met_.sky_radiance(lane) * met_.sky_weight(lane, queue_.from[now[lane]]), true,
+      film_.add(path, seen_beta(path) * met_.sky_radiance(lane) * met_.sky_weight(lane, queue_.from[now[lane]]), true,
                 environment.light_group());
     }
   }

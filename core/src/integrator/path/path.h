@@ -29,8 +29,8 @@ public:
       : scene_(scene), settings_(settings), spread_at_eye_(camera), width_at_eye_(PixelCone(camera).base),
         camera_(camera, scene.motion, settings), film_(scene, camera, settings), hit_(scene, camera), met_(scene, camera),
         haunted_(changes_paths(settings)), queues_(scene), textures_(scene), surface_(scene, camera, settings),
-        light_(scene, &camera), occlusion_(scene, settings), shadow_(scene, camera, settings),
-        last_bounces_(settings.max_bounces) {
+        light_(scene, &camera), occlusion_(scene, settings), ambient_(scene, settings.fast_distance),
+        shadow_(scene, camera, settings), last_bounces_(settings.max_bounces) {
     if (std::ranges::any_of(scene.materials, [](const MaterialView &material) { return material.program.looks_around; }))
       surface_.look_by(node_rays_.emplace(scene).functions());
     if (scene.lights.passes_blockers())
@@ -94,6 +94,7 @@ private:
   void send_shadow(uint32_t lane);
   void go_on();
   void look_around(uint32_t lane);
+  void add_ambient(uint32_t lanes);
   void pass_straight(uint32_t lane);
   glm::vec3 portal_weight(uint32_t lane, const Portal &portal) const;
   glm::vec3 straight_weight(uint32_t lane) const;
@@ -104,6 +105,8 @@ private:
   Path &branch_off(std::vector<Path> &paths, uint32_t lane, uint32_t branch) const;
   void enter(uint32_t lane, uint32_t branch);
 
+  // Returns the throughput from the environment.
+  glm::vec3 seen_beta(const Path &path) const { return path.beta * (path.is_fast(settings_) ? settings_.fast_factor : 1.0f); }
   const Path &path_of(uint32_t lane) const { return queue_.paths[path_[lane]]; }
 
   const Scene &scene_;
@@ -126,7 +129,7 @@ private:
   NumberStage numbers_;
   LightStage light_;
   ScatterStage scatter_;
-  OcclusionStage occlusion_;
+  OcclusionStage occlusion_, ambient_; // of the pass, and of the ambient light
   ShadowStage shadow_;
   std::optional<WalkStage> walk_; // if light enters some surface
   LastBounces last_bounces_;

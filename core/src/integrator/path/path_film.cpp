@@ -130,7 +130,8 @@ void PathFilm::add_lit(const WaitingLight &waiting, const glm::vec3 &light) {
     indirect_[waiting.target * sums() + waiting.sum] += kept;
   else
     result.radiance += kept;
-  passes.add(result, kept, waiting.share, waiting.indirect);
+  if (waiting.has_passes)
+    passes.add(result, kept, waiting.share, waiting.indirect);
 }
 
 uint32_t PathFilm::record(SurfaceStage &surfaces, std::span<const Path> paths, const size_t (&number)[kBlockLanes],

@@ -26,6 +26,8 @@ void PathIntegrator::go_on() {
     if (splitting_)
       numbers_.draw(kPathNumbers, surface_.count(), splitting_, count, branch);
     scatter_.scatter({surface_.surfaces(), surface_.lobes(), numbers_.numbers, beta_, paths_});
+    if (branch == 0 && settings_.ambient > 0.0f)
+      add_ambient(going & surface_.lobes().scatters & ~ends_);
     occlusion_.look(occlusion_asked_, surface_, scatter_.next(), numbers_.numbers);
     each_lane(going, [&](uint32_t lane) {
       const bool passes = branch == 0 && path_of(lane).chooses_to_pass(surface_.lobes().pass[lane]);
@@ -48,6 +50,25 @@ void PathIntegrator::look_around(uint32_t lane) {
   film_.add_open(path,
                  occlusion_.send(lane, surface_, scatter_.next(), path.sample, path.beta * recorded_opacity(surface_, lane),
                                  path.passed_through, path.asking_path(), shadow_));
+}
+
+// Adds the ambient light that diffuse lobes of these lanes reflect, with its occlusion rays.
+void PathIntegrator::add_ambient(uint32_t lanes) {
+  surface_.describe();
+  ambient_.look(lanes, surface_, scatter_.next(), numbers_.numbers);
+  each_lane(lanes, [&](uint32_t lane) {
+    const Path &path = path_of(lane);
+    const glm::vec3 matt = get(surface_.means().shown[size_t(Component::Diffuse)], lane);
+    const glm::vec3 light = path.beta * surface_.opacity(lane) * matt * settings_.ambient;
+    if (light == glm::vec3(0.0f))
+      return;
+    WaitingLight waiting = film_.waiting(path);
+    waiting.indirect = path.scatterings > 0;
+    waiting.has_passes = false;
+    shadow_.push(ambient_.ray(lane, surface_), waiting, light, path.passed_through);
+    if (shadow_.asks_light_path())
+      shadow_.set_light_path(path.asking_path());
+  });
 }
 
 // Continues a path straight through a surface, unless the path has reached its limit of passed surfaces.
@@ -176,7 +197,12 @@ void PathIntegrator::scatter(uint32_t lane, uint32_t branch) {
   next_.from.push_back({get(surface_.surfaces().p, lane), get(surface_.lobes().ns, lane),
                         (surface_.lobes().transmits >> lane & 1) != 0, block.pdf[lane], 0.0,
                         surface_.instance(lane).receiver_set});
-  scatter_.write_ray(lane, surface_.hit(lane), next.kinds, surface_.surfaces().time[lane], next_.rays.emplace_back());
+  Ray &ray = next_.rays.emplace_back();
+  scatter_.write_ray(lane, surface_.hit(lane), next.kinds, surface_.surfaces().time[lane], ray);
+  if (next.is_fast(settings_)) {
+    const double own = surface_.instance(lane).fast_distance;
+    ray.tmax = normalised_reach(own > 0.0 ? own : double(settings_.fast_distance), scene_) / glm::length(ray.d);
+  }
 }
 
 // Appends a copy of a lane's path, which is a branch where the lane splits.

@@ -47,7 +47,14 @@ struct Path {
     return last ? 0u : std::min(std::max(limit, passed_through + 1) - passed_through, kMaxCrossings - 1 - crossings);
   }
   // Whether the path scatters no more at its next surface, by its number of scatterings.
-  bool is_spent(const IntegratorSettings &settings) const { return last || scatterings > settings.max_bounces; }
+  bool is_spent(const IntegratorSettings &settings) const {
+    return last || scatterings > settings.max_bounces || is_fast(settings);
+  }
+  // Whether the rest of the path is replaced: its ray ends at a near surface, or sees a changed environment.
+  bool is_fast(const IntegratorSettings &settings) const {
+    return settings.fast_bounces != 0 &&
+           scatterings + 1 > settings.fast_bounces + story.transmission + uint32_t(story.glossy > 0);
+  }
   // Whether a limit of a kind of scatterings ends the path there.
   bool is_over_limit(const IntegratorSettings &settings) const {
     return ghost == Ghost::None && (story.diffuse > settings.diffuse_bounces || story.glossy > settings.glossy_bounces ||

@@ -12,6 +12,7 @@ struct WaitingLight {
   bool indirect = false;        // scattered more than once
   Ghost ghost = Ghost::None;    // of the path
   float parts = 1.0f;           // number of contributions that share the weight of this one
+  bool has_passes = true;       // the light is in passes beside the picture
   bool occlusion = false;       // no light: the pass of ambient occlusion
   glm::vec3 share[2] = {glm::vec3(0.0f), glm::vec3(0.0f)}; // diffuse, glossy; the rest is transmission
 };

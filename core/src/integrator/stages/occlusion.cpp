@@ -9,10 +9,22 @@ namespace lancer {
 const OcclusionKernel &occlusion_kernel() { return LANCER_CHOSEN_SHADING_KERNEL(occlusion_kernel); }
 
 OcclusionStage::OcclusionStage(const Scene &scene, const IntegratorSettings &settings)
-    : kernel_(occlusion_kernel()), scene_(scene),
-      reach_(settings.occlusion_distance > 0.0f ? double(settings.occlusion_distance) * scene.normalisation.scale
-                                                : std::numeric_limits<double>::infinity()),
+    : kernel_(occlusion_kernel()), scene_(scene), reach_(normalised_reach(double(settings.occlusion_distance), scene)),
       next_rays_look_(!(scene.features & (kFeatureTransparency | kFeatureVisibility))) {}
+
+OcclusionStage::OcclusionStage(const Scene &scene, float distance)
+    : kernel_(occlusion_kernel()), scene_(scene), reach_(normalised_reach(double(distance), scene)), next_rays_look_(false) {}
+
+// Like a shadow ray, the occlusion ray starts on the curved surface of a smooth mesh.
+Ray OcclusionStage::ray_towards(const glm::vec3 &wi, uint32_t lane, const SurfaceStage &surfaces) const {
+  LightSample around;
+  around.wi = glm::dvec3(wi);
+  around.distance = std::numeric_limits<double>::infinity();
+  Ray ray = shadow_ray(scene_.geometry, surfaces.surface(lane), get(surfaces.lobes().ns, lane), get(surfaces.lobes().ng, lane),
+                       around);
+  ray.tmax = reach_;
+  return ray;
+}
 
 OcclusionStage::Open OcclusionStage::send(uint32_t lane, const SurfaceStage &surfaces, const ScatterBlock &next,
                                           uint32_t sample, const glm::vec3 &weight, uint32_t passed,
@@ -20,13 +32,7 @@ OcclusionStage::Open OcclusionStage::send(uint32_t lane, const SurfaceStage &sur
   const Surface surface = surfaces.surface(lane);
   const glm::vec3 ns = get(surfaces.lobes().ns, lane), ng = get(surfaces.lobes().ng, lane);
   const auto push = [&](const glm::vec3 &wi, const glm::vec3 &share) {
-    LightSample around;
-    around.wi = glm::dvec3(wi);
-    around.distance = std::numeric_limits<double>::infinity();
-    // Like a shadow ray, the occlusion ray starts on the curved surface of a smooth mesh.
-    Ray ray = shadow_ray(scene_.geometry, surface, ns, ng, around);
-    ray.tmax = reach_;
-    shadows.push(ray, {.target = sample, .occlusion = true}, share, passed);
+    shadows.push(ray_towards(wi, lane, surfaces), {.target = sample, .occlusion = true}, share, passed);
     if (shadows.asks_light_path())
       shadows.set_light_path(path);
   };

@@ -7,6 +7,8 @@
 #include "integrator/stages/scatter.h"
 #include "integrator/stages/shadow.h"
 
+#include <limits>
+
 namespace lancer {
 
 struct alignas(64) OcclusionBlock {
@@ -23,9 +25,16 @@ struct OcclusionKernel {
 };
 LANCER_DECLARE_KERNEL(OcclusionKernel, occlusion_kernel)
 
+// Returns a length in the user's units in the normalised world, where 0 is unlimited.
+inline double normalised_reach(double length, const Scene &scene) {
+  return length > 0.0 ? length * scene.normalisation.scale : std::numeric_limits<double>::infinity();
+}
+
 class OcclusionStage {
 public:
   OcclusionStage(const Scene &scene, const IntegratorSettings &settings);
+  // distance: of occluders, in the user's units; each lane gets a ray of its own.
+  OcclusionStage(const Scene &scene, float distance);
 
   // Samples a direction for each of the lanes that ask.
   void look(uint32_t asked, const SurfaceStage &surfaces, const ScatterBlock &next, const VertexNumbers &numbers) {
@@ -42,10 +51,14 @@ public:
   // Light Path.
   Open send(uint32_t lane, const SurfaceStage &surfaces, const ScatterBlock &next, uint32_t sample, const glm::vec3 &weight,
             uint32_t passed, const LightPath<float> &path, ShadowStage &shadows) const;
+  // Returns the occlusion ray of a lane.
+  Ray ray(uint32_t lane, const SurfaceStage &surfaces) const { return ray_towards(get(around_.wi, lane), lane, surfaces); }
   // Whether a ray that replaces an occlusion ray is occluded.
   bool occluded(const Ray &ray, const Hit &hit) const { return hit.valid() && hit.t * glm::length(ray.d) < reach_; }
 
 private:
+  Ray ray_towards(const glm::vec3 &wi, uint32_t lane, const SurfaceStage &surfaces) const;
+
   const OcclusionKernel &kernel_;
   const Scene &scene_;
   double reach_;

@@ -16,8 +16,8 @@ namespace {
 MeansWanted means_wanted(const IntegratorSettings &settings) {
   const LightPasses passes(settings);
   return {.normal = (settings.passes & bit(Pass::Normal)) != 0,
-          .matt_normal = passes.occlusion(),
-          .shown = passes.components(),
+          .matt_normal = passes.occlusion() || settings.ambient > 0.0f,
+          .shown = passes.components() || settings.ambient > 0.0f,
           .mixture = passes.guides(),
           .blended = settings.blended_features};
 }
