@@ -18,7 +18,8 @@ MEMORY = ("geometry_bytes", "accelerator_bytes", "texture_bytes", "film_bytes")
 def account(engine, scene, layer, session, schedule, denoised, uses):
     """Store and show the figures of a view layer, and return Messages about samples that are left out.
 
-    denoised: the denoised picture, or None; uses: the features of the scene, as dicts.
+    layer: its name, with that of the view if there are several. denoised: the denoised picture, or None.
+    uses: the features of the scene, as dicts.
     """
     numbers = render_report.account(session, schedule)
     numbers.update(denoise.statistics(denoised))
@@ -31,7 +32,7 @@ def account(engine, scene, layer, session, schedule, denoised, uses):
         numbers.update(kept.counts, kept_bytes=kept.bytes)
     # Only metadata of the result from get_result reaches the file.
     stamped = engine.get_result()
-    several = len(stamped.layers) > 1
+    several = len(stamped.layers) > 1 or len(stamped.views) > 1
     lines = numbers["accuracy"] = render_report.lines(numbers, session.settings, layer if several else "")
     layers = last_statistics.get(scene, {}).get("layers", {})
     last_statistics[scene] = {**numbers, "layers": {**layers, layer: numbers}}

@@ -22,7 +22,7 @@ from ..measure.schedule import Schedule, TimeShare
 from ..messages.messages import Messages
 from ..messages.severity import Severity
 from ..viewport.viewport import Viewport
-from . import first_look, kept_pictures, many_machines, passes, preview, render_export, render_job, resume
+from . import first_look, kept_pictures, many_machines, passes, preview, render_export, render_job, resume, views
 from .account import account
 from .denoising import Denoising, wishes
 from .later import Later
@@ -66,6 +66,8 @@ class LancerRenderEngine(bpy.types.RenderEngine):
     _following = None  # the kept_pictures.Following
     _later = None  # the Later of the snapshot
     _resume = None  # the Resume of the view layer
+    _views = ()  # of the picture
+    _shared = None  # the Scene of several views
     _viewport = None
 
     def update_render_passes(self, scene=None, renderlayer=None):
@@ -99,7 +101,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
                     self._later.add(self.free_blender_memory)
                 else:
                     self.free_blender_memory()
-                self._guarded(scene, self._render, scene, layer, wanted, denoising, machines)
+                self._guarded(scene, self._render_views, scene, layer, wanted, denoising, machines)
             self._snapshot = self._ahead = None
             self._later = self._resume = None
             if self._is_over():
@@ -212,8 +214,13 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         if parts is not None:
             self._following.give_back(parts)
             kept.count_parts(self._snapshot, parts)
+        self._views = views.views(self, depsgraph, self._snapshot.camera, messages)
+        if self._views[0].name and self._snapshot.motion.keys:
+            messages.add("with stereoscopy the motion of the camera is not blurred", "feature:camera motion with stereoscopy")
+            self._snapshot.set("motion", dataclasses.replace(self._snapshot.motion, keys=()))
         settings = self._snapshot.settings
-        settings = dataclasses.replace(settings, time_limit=self._picture.limit(settings.time_limit))
+        time_limit = self._picture.limit(settings.time_limit) / len(self._views)
+        settings = dataclasses.replace(settings, time_limit=time_limit)
         if denoise.ready(scene, view_layer):
             settings = denoise.prepared(settings, passes.sources(wanted))
         self._snapshot.set("settings", settings)
@@ -233,26 +240,52 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         """Return a Session that owns its scene, unless the scene is kept for the next frame."""
         kept, snapshot = kept_pictures.of(scene), self._snapshot
         kind, digest = (Session, None) if self._resume is None else (SteppedSession, resume.digest_of(snapshot))
+        if self._shared is not None:
+            return kind(self._shared, snapshot.camera, snapshot.settings)
         before = (kept and kept.scenes.get(layer)) or shared_scenes.nearest(snapshot)
         given = {"poll": self._is_over, "before": before, "stock": shared_scenes.stock}
-        if kept is None:
+        if kept is None and len(self._views) == 1:
             session = kind.upload(snapshot, release=True, filled=self._ahead.end, digest=digest, **given)
             shared_scenes.remember(session.scene)
             return session
         uploaded = Scene.upload(snapshot, **given)
-        kept.keep_scene(layer, uploaded)
+        if kept is None:
+            self._ahead.end()
+            self._shared = uploaded
+        else:
+            kept.keep_scene(layer, uploaded)
         shared_scenes.remember(uploaded)
         if digest is not None:
             uploaded.set_digest(digest)
         return kind(uploaded, snapshot.camera, snapshot.settings)
 
-    def _render(self, scene, layer, wanted, denoising, machines):
+    def _render_views(self, scene, layer, wanted, denoising, machines):
+        snapshot = self._snapshot
+        try:
+            for view in self._views:
+                if view.name:
+                    self.active_view_set(view.name)
+                    self._snapshot = snapshot.replaced(camera=view.camera)
+                    # Each view has samples of its own.
+                    self._resume = self._resume and resume.wanted(scene, f"{layer} {view.name}")
+                elif len(self._views) == 1:
+                    # Nothing else refers to the snapshot, which the upload empties.
+                    snapshot = None
+                self._render(scene, layer, wanted, denoising, machines, view.name)
+                if self._is_over():
+                    break
+        finally:
+            if self._shared is not None:
+                self._shared.close()
+                self._shared = None
+
+    def _render(self, scene, layer, wanted, denoising, machines, view):
         with self._opened(scene, layer, machines) as session:
             # The library has its own copy.
             self._snapshot = None
             self._tell(scene, Messages.of_library(session.messages()))
             camera = session.camera
-            result = self.begin_result(0, 0, camera.region_width, camera.region_height, layer=layer)
+            result = self.begin_result(0, 0, camera.region_width, camera.region_height, layer=layer, view=view)
             if (result.resolution_x, result.resolution_y) != (camera.region_width, camera.region_height):
                 expected = f"{camera.region_width} x {camera.region_height}"
                 self.end_result(result, cancel=True)
@@ -296,7 +329,8 @@ class LancerRenderEngine(bpy.types.RenderEngine):
                 stamped = self.get_result()
                 for name, value in self._metadata.items():
                     stamped.stamp_data_add_field(name, value)
-                self._tell(scene, account(self, scene, layer, session, schedule, denoised, self._later.uses))
+                shown = f"{layer}, {view}" if view else layer
+                self._tell(scene, account(self, scene, shown, session, schedule, denoised, self._later.uses))
             finally:
                 # Keep the unfinished picture, after Esc too.
                 self.end_result(result)

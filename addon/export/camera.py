@@ -1,5 +1,7 @@
 """The scene's camera: a rigid frame, a window, a lens."""
 
+from typing import NamedTuple
+
 import bpy
 import numpy as np
 
@@ -28,8 +30,19 @@ def border(scene, width, height):
     return x0, y0, x1 - x0, y1 - y0
 
 
-def export_camera(camera, depsgraph, messages):
-    """Return the snapshot.Camera of a camera object; raise LancerError if it is None, no camera, or its image is empty."""
+class Eye(NamedTuple):
+    """A view of a picture with stereoscopy, as Blender places it."""
+
+    side: float  # of spherical stereo, in distances between the eyes to the right; else 0
+    matrix: np.ndarray  # (4, 4), of the camera
+    shift_x: float
+
+
+def export_camera(camera, depsgraph, messages, eye=None):
+    """Return the snapshot.Camera of a camera object; raise LancerError if it is None, no camera, or its image is empty.
+
+    eye: the Eye of a view with stereoscopy.
+    """
     scene = depsgraph.scene
     if camera is None:
         raise LancerError(NO_CAMERA.format(scene.name))
@@ -41,6 +54,11 @@ def export_camera(camera, depsgraph, messages):
     if min(width, height, region_width, region_height) < 1:
         raise LancerError(f"the image has {region_width} x {region_height} pixels: raise the resolution or widen the border")
     fields = camera_fields(camera, depsgraph, messages)
+    window = _window(camera, depsgraph, fields["kind"], width, height)
+    if eye is not None:
+        fields["matrix"] = rigid(eye.matrix, f"camera '{camera.name}'", messages)
+        fields.update(_spherical(camera.data.stereo, eye.side))
+        window = _shifted(window, camera.data, fields["kind"], eye, width, height, scene.render)
     return snapshot.Camera(
         width=width,
         height=height,
@@ -48,9 +66,34 @@ def export_camera(camera, depsgraph, messages):
         y=y,
         region_width=region_width,
         region_height=region_height,
-        window=_window(camera, depsgraph, fields["kind"], width, height),
+        window=window,
         **fields,
     )
+
+
+def _spherical(stereo, side):
+    """Return the fields of spherical stereo; none at the middle between the eyes."""
+    if side == 0.0:
+        return {}
+    merges = stereo.use_pole_merge
+    return {
+        "eye_offset": side * stereo.interocular_distance,
+        "convergence_distance": 0.0 if stereo.convergence_mode == "PARALLEL" else stereo.convergence_distance,
+        "pole_merge_from": stereo.pole_merge_angle_from if merges else 0.0,
+        "pole_merge_to": stereo.pole_merge_angle_to if merges else 0.0,
+    }
+
+
+def _shifted(window, data, kind, eye, width, height, render):
+    """Return a window moved by the difference between an eye's shift and the camera's, whose unit is the side that fits."""
+    left, right, bottom, top = window
+    wide = width * render.pixel_aspect_x >= height * render.pixel_aspect_y
+    fits_width = data.sensor_fit == "HORIZONTAL" or data.sensor_fit == "AUTO" and wide
+    unit = right - left if fits_width else top - bottom
+    if kind not in (CameraKind.PERSPECTIVE, CameraKind.ORTHOGRAPHIC):
+        unit = 1.0
+    moved = (eye.shift_x - data.shift_x) * unit
+    return left + moved, right + moved, bottom, top
 
 
 def camera_fields(camera, depsgraph, messages):

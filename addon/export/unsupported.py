@@ -34,7 +34,6 @@ _HAS_OFFSET = "shadow_terminator_shading_offset" in _OF_OBJECTS
 
 
 def check_scene(scene, messages):
-    who = f"scene '{scene.name}'"
     check_cycles(scene, messages)
 
 

@@ -29,17 +29,14 @@ _REPLACED = {
     "RENDER_PT_simplify_render",
     "RENDER_PT_simplify_viewport",
 }
-# Panels without effect: stereoscopy, Freestyle, volumes and hair.
+# Panels without effect: Freestyle, volumes and hair.
 _WITHOUT_EFFECT = {
-    "DATA_PT_camera_stereoscopy",
     "DATA_PT_volume_render",
     "MATERIAL_PT_freestyle_line",
     "PARTICLE_PT_hair_shape",
     "PARTICLE_PT_render_path",
     "PARTICLE_PT_render_path_timing",
     "RENDER_PT_freestyle",
-    "RENDER_PT_output_views",
-    "RENDER_PT_stereoscopy",
 }
 
 

@@ -101,12 +101,18 @@ def _channels(data):
 
 
 def _passes(parts, layer):
-    """Group channels by pass. Their names are LAYER.PASS.CHANNEL, in some files with LAYER.PASS as the name of the part."""
+    """Group channels by pass. Their names are LAYER.PASS.CHANNEL, in some files with LAYER.PASS as the name of the part.
+
+    With stereoscopy the view is the end of a pass's name, also where the part has it as an attribute.
+    """
     groups = {}
     for part in parts:
         prefix = part.get("name", b"").decode()
         for name, plane in part["planes"].items():
             words = name.split(".") if "." in name else [*prefix.split("."), name]
+            view = part.get("view", b"").decode()
+            if view and view not in words[:-1]:
+                words.insert(-1, view)
             if layer is not None and words[0] != layer:
                 continue
             if len(words) >= 3 or words[0] != "Composite":

@@ -1,7 +1,7 @@
 """Give both engines equivalent settings for the light that they compute and for the number of samples.
 
 The author's settings of the picture stay: passes, film, filter, lens, blur, world, the depth of paths. Settings that limit or
-smooth light to save samples are switched off, since Lancer has none of them, and so are settings that end a render at different
+smooth light to save samples are switched off, so that all light is compared, and so are settings that end a render at different
 numbers of samples in the two engines. Settings that make Cycles fast stay: light tree, guiding, roulette.
 """
 
@@ -88,7 +88,7 @@ def _render(render, pixels, threads):
         # Blender's own limit is 4 pixels.
         setattr(render, axis, max(4, round(getattr(render, axis) * pixels / longer)))
     render.resolution_percentage = 100
-    return [*_take(render, (("use_freestyle", False, "Freestyle"), ("use_multiview", False, "stereoscopy")))]
+    return [*_take(render, (("use_freestyle", False, "Freestyle")))]
 
 
 def choose_layer(scene):

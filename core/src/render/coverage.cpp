@@ -231,7 +231,7 @@ Background find_background(const Scene &scene, const Camera &camera, const Integ
 }
 
 bool has_even_background(const Scene &scene, const Camera &camera) {
-  if (camera.is_panorama() || scene.lights.environment().varies())
+  if (camera.is_panorama() || camera.is_stereo() || scene.lights.environment().varies())
     return false;
   for (uint32_t number = 0; number < scene.lights.lamps().size(); ++number)
     if (const DescribedLight lamp = describe(scene.lights.lamps()[number], number);

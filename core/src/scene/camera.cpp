@@ -127,6 +127,8 @@ void Camera::scale_lengths(double scale) {
   clip_end *= scale;
   lens_radius *= scale;
   focal_distance *= scale;
+  eye_offset *= scale;
+  convergence *= scale;
   if (kind == CameraKind::Orthographic) {
     left *= scale;
     right *= scale;
@@ -143,6 +145,8 @@ Ray Camera::ray(const glm::dvec2 &raster, const glm::dvec2 &lens) const {
     const RayLanes<float> flat = flat_ray<float>(*this, {raster.x, raster.y}, {lens.x, lens.y});
     ray.o = flat.o;
     ray.d = flat.d;
+    if (is_stereo())
+      move_to_eye({0.0, 0.0, 1.0}, ray.o, ray.d);
     return ray;
   }
   const glm::dvec2 place(left + (right - left) * raster.x / width, bottom + (top - bottom) * raster.y / height);
@@ -162,9 +166,31 @@ Ray Camera::ray(const glm::dvec2 &raster, const glm::dvec2 &lens) const {
     o = lens_radius * (lens.x * u + lens.y * (ball ? glm::cross(u, d) : glm::cross(d, u)));
     d = glm::normalize(focal_distance * d - o);
   }
+  if (is_stereo())
+    move_to_eye({0.0, 1.0, 0.0}, o, d);
   ray.o = to_world.point(o);
   ray.d = to_world.vector(d);
   return ray;
+}
+
+void Camera::move_to_eye(const glm::dvec3 &up, glm::dvec3 &o, glm::dvec3 &d) const {
+  const double length = glm::length(d);
+  const glm::dvec3 unit = d / length, across = glm::cross(unit, up);
+  // A ray along the axis has no side: its eye is in the middle.
+  if (!(glm::dot(across, across) > 0.0))
+    return;
+  double offset = eye_offset;
+  if (pole_merge_to > 0.0) {
+    const double altitude = std::abs(asin(std::clamp(glm::dot(unit, up), -1.0, 1.0)));
+    if (altitude > pole_merge_to)
+      offset = 0.0;
+    else if (altitude > pole_merge_from)
+      offset *= cos(glm::half_pi<double>() * (altitude - pole_merge_from) / (pole_merge_to - pole_merge_from));
+  }
+  const glm::dvec3 moved = offset * glm::normalize(across);
+  o += moved;
+  if (convergence > 0.0)
+    d = length * glm::normalize(convergence * unit - moved);
 }
 
 glm::dvec2 Camera::aperture(const glm::vec2 &u) const {

@@ -36,7 +36,10 @@ struct Camera {
   double lens_radius = 0.0, focal_distance = 0.0;
   uint32_t aperture_blades = 0; // below 3: a round aperture
   double aperture_rotation = 0.0, aperture_ratio = 1.0;
+  // Spherical stereo; convergence: 0 = parallel. See lancer_camera.
+  double eye_offset = 0.0, convergence = 0.0, pole_merge_from = 0.0, pole_merge_to = 0.0;
 
+  bool is_stereo() const { return eye_offset != 0.0; }
   bool is_panorama() const { return kind > CameraKind::Orthographic; }
   // Multiplies the lengths of the scene by scale.
   void scale_lengths(double scale);
@@ -45,6 +48,9 @@ struct Camera {
   // point of the lens from aperture(). The direction's component along the axis is 1, so that t is the depth; for panoramas,
   // the direction is unit. Outside a panorama's field of view there is no ray, and tmax is negative.
   Ray ray(const glm::dvec2 &raster, const glm::dvec2 &lens) const;
+  // Moves a ray to the eye of spherical stereo; up: the axis about which eyes turn, in the frame of the ray. d keeps its
+  // length.
+  void move_to_eye(const glm::dvec3 &up, glm::dvec3 &o, glm::dvec3 &d) const;
   // Returns a point of the lens, in units of its radius, for u in [0, 1)^2.
   glm::dvec2 aperture(const glm::vec2 &u) const;
 

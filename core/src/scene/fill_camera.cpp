@@ -99,6 +99,11 @@ Camera read_camera(const lancer_camera &source) {
     bad_argument("camera: lens radius " + std::to_string(source.lens_radius) + " must be finite and not negative");
   if (source.lens_radius > 0.0 && !(source.focal_distance > 0.0))
     bad_argument("camera: focal distance " + std::to_string(source.focal_distance) + " must be positive");
+  for (const double number : {source.eye_offset, source.convergence_distance, source.pole_merge_from, source.pole_merge_to})
+    if (!std::isfinite(number))
+      bad_argument("camera: a number of its spherical stereo is not finite");
+  if (source.eye_offset != 0.0 && source.kind == LANCER_ORTHOGRAPHIC)
+    bad_argument("camera: an orthographic camera has no spherical stereo");
   camera.kind = static_cast<CameraKind>(source.kind);
   std::copy(source.panorama, source.panorama + 8, camera.panorama.begin());
   camera.width = source.width;
@@ -117,6 +122,10 @@ Camera read_camera(const lancer_camera &source) {
   camera.focal_distance = source.focal_distance;
   camera.aperture_blades = source.aperture_blades;
   camera.aperture_rotation = source.aperture_rotation;
+  camera.eye_offset = source.eye_offset;
+  camera.convergence = std::max(source.convergence_distance, 0.0);
+  camera.pole_merge_from = source.pole_merge_from;
+  camera.pole_merge_to = source.pole_merge_to;
   camera.aperture_ratio = source.lens_radius > 0.0 ? source.aperture_ratio : 1.0;
   return camera;
 }
