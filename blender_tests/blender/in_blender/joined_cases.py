@@ -1,9 +1,10 @@
-"""Pictures that Blender joins from several scenes: strips, composites and sets."""
+"""Pictures that Blender joins from several scenes, strips, composites and sets, and of scenes of thousands of objects."""
 
 import os
 
 import bpy
 import flat_stage
+import numpy as np
 import stage
 
 
@@ -142,3 +143,64 @@ def with_set(engine):
         result[str(frame)] = flat_stage.colors(picture)
         result[f"top {frame}"] = picture[-1, 14].round(3).tolist()
     return result
+
+
+@flat_stage.by_both
+def crowded(engine):
+    """Three thousand objects in a hundred collections, some hidden, over each other: rows of the blue of each pixel.
+
+    The height of an object tells its colour, so that the picture tells which objects are shown: those of linked meshes, of
+    meshes of their own, and of instances of collections in collections.
+    """
+    scene = flat_stage.begin(engine)
+    shades = [stage.shader("ShaderNodeEmission", Color=(0.0, 0.0, level / 8), Strength=1.0) for level in range(1, 9)]
+    shared = [square(f"Shared {level}", shade) for level, shade in enumerate(shades)]
+    # Blender walks through all objects of a scene for each new one: link the collections last.
+    collections = [bpy.data.collections.new("All")]
+    for number in range(1, 101):
+        made = bpy.data.collections.new(f"{number}")
+        collections[number // 2].children.link(made)
+        collections.append(made)
+    collections[9].hide_render = True
+    pixels = flat_stage.WIDTH * flat_stage.HEIGHT
+    for number in range(3000):
+        level = number * 5 % 8
+        data = shared[level] if number % 4 else square(f"Own {number}", shades[level])
+        item = bpy.data.objects.new(f"{number}", data)
+        item.location = place(number % pixels, 0.01 * level)
+        collections[1 + number % 100].objects.link(item)
+    inner, outer = bpy.data.collections.new("Inner"), bpy.data.collections.new("Outer")
+    for column in range(2):
+        inner.objects.link(instance(shared[7], (column, 0.0, 0.0)))
+    for row in range(2):
+        outer.objects.link(instance(inner, (0.0, row, 0.0)))
+    for number in (0, 20, 84):
+        collections[0].objects.link(instance(outer, place(number, 0.5)))
+    scene.collection.children.link(collections[0])
+    layer = scene.view_layers[0].layer_collection
+    for name in ("All", "1", "2", "4", "8", "17"):
+        layer = layer.children[name]
+    layer.exclude = True
+    return np.round(stage.picture(scene)[..., 2] * 8, 3).tolist()
+
+
+def square(name, shade):
+    """Return a mesh that covers a pixel."""
+    data = bpy.data.meshes.new(name)
+    data.from_pydata([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], [], [(0, 1, 2, 3)])
+    data.materials.append(shade)
+    return data
+
+
+def place(pixel, height):
+    row, column = divmod(pixel, flat_stage.WIDTH)
+    return column - flat_stage.WIDTH / 2, row - flat_stage.HEIGHT / 2, height
+
+
+def instance(what, location):
+    """Return an object of a mesh, or an instance of a collection."""
+    item = bpy.data.objects.new("Instance", what if isinstance(what, bpy.types.Mesh) else None)
+    if item.type == "EMPTY":
+        item.instance_type, item.instance_collection = "COLLECTION", what
+    item.location = location
+    return item
