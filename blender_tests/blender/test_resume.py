@@ -27,13 +27,15 @@ def test_more_samples_of_a_picture(case):
     assert third == {"same": True, "facts": [40, "samples", continues(40)], "files": [FILE]}
 
 
-@pytest.mark.parametrize("target", [0.0, 0.005])
+@pytest.mark.parametrize("target", [0.0, 0.003])
 def test_cancelled_renders_end_as_one_that_is_not(case, target):
     got = case("cancelled", target)
     (few, how, none), (more, why, told) = got["cancelled"]
-    assert how == why == "cancelled" and none == [] and told == continues(few) and 0 < few < more < 16
+    assert how == why == "cancelled" and none == [] and told == continues(few) and 0 < few < 16 < more < 64
     assert got["same"] and got["facts"] == [*got["whole"][:2], continues(more)]
     assert got["whole"][1] == ("target error" if target else "samples")
+    # No check is made twice, and none is left out.
+    assert got["checks"][0] == got["checks"][1] and bool(target) == (len(got["checks"][0]) > 1)
 
 
 def test_a_killed_render_keeps_what_was_written(which, tmp_path):

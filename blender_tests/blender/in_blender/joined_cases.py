@@ -7,6 +7,9 @@ import flat_stage
 import numpy as np
 import stage
 
+# Pixels of the picture of a crowd, across and up.
+CROWD = 64, 48
+
 
 @flat_stage.by_both
 def sequenced(engine):
@@ -147,12 +150,13 @@ def with_set(engine):
 
 @flat_stage.by_both
 def crowded(engine):
-    """Three thousand objects in a hundred collections, some hidden, over each other: rows of the blue of each pixel.
+    """Three thousand objects in a hundred collections, one on each pixel: the level of each pixel's blue in rows.
 
-    The height of an object tells its colour, so that the picture tells which objects are shown: those of linked meshes, of
-    meshes of their own, and of instances of collections in collections.
+    Objects of shared meshes and of meshes of their own, and instances of collections in collections above them.
     """
     scene = flat_stage.begin(engine)
+    scene.render.resolution_x, scene.render.resolution_y = CROWD
+    scene.camera.data.ortho_scale = float(CROWD[0])
     shades = [stage.shader("ShaderNodeEmission", Color=(0.0, 0.0, level / 8), Strength=1.0) for level in range(1, 9)]
     shared = [square(f"Shared {level}", shade) for level, shade in enumerate(shades)]
     # Blender walks through all objects of a scene for each new one: link the collections last.
@@ -162,12 +166,11 @@ def crowded(engine):
         collections[number // 2].children.link(made)
         collections.append(made)
     collections[9].hide_render = True
-    pixels = flat_stage.WIDTH * flat_stage.HEIGHT
     for number in range(3000):
         level = number * 5 % 8
         data = shared[level] if number % 4 else square(f"Own {number}", shades[level])
         item = bpy.data.objects.new(f"{number}", data)
-        item.location = place(number % pixels, 0.01 * level)
+        item.location = place(number, 0.0)
         collections[1 + number % 100].objects.link(item)
     inner, outer = bpy.data.collections.new("Inner"), bpy.data.collections.new("Outer")
     for column in range(2):
@@ -181,7 +184,7 @@ def crowded(engine):
     for name in ("All", "1", "2", "4", "8", "17"):
         layer = layer.children[name]
     layer.exclude = True
-    return np.round(stage.picture(scene)[..., 2] * 8, 3).tolist()
+    return np.round(stage.picture(scene)[..., 2].ravel() * 8, 3).tolist()
 
 
 def square(name, shade):
@@ -193,8 +196,8 @@ def square(name, shade):
 
 
 def place(pixel, height):
-    row, column = divmod(pixel, flat_stage.WIDTH)
-    return column - flat_stage.WIDTH / 2, row - flat_stage.HEIGHT / 2, height
+    row, column = divmod(pixel, CROWD[0])
+    return column - CROWD[0] / 2, row - CROWD[1] / 2, height
 
 
 def instance(what, location):

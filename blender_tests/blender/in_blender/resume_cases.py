@@ -8,6 +8,7 @@ import bpy
 import numpy as np
 import stage
 
+from addon.bindings.session import Session
 from addon.engine import last_messages, last_statistics, resume, resume_file, stepped_session
 from addon.engine.render_engine import LancerRenderEngine
 
@@ -19,7 +20,8 @@ def room(samples, keeps=True, **settings):
     scene.lancer.use_resume = keeps
     for name, value in settings.items():
         setattr(scene.lancer, name, value)
-    stepped_session._STEP_SECONDS, stepped_session._TILES_EACH = 1e-4, 1
+    # Two tiles a step, and each range in two pieces, on any machine.
+    stepped_session._STEP_SECONDS, stepped_session._TILES_EACH, stepped_session._PIECES = 0.0, 1, 2
     return scene
 
 
@@ -83,12 +85,29 @@ def more_samples():
 
 
 def cancelled(target):
-    """Renders that are cancelled twice, in a step of the first samples and in a later one, and then end."""
-    scene = room(64, keeps=False, target_error=float(target))
-    whole, last = rendered(scene), facts(scene)
-    scene = room(64, target_error=float(target))
-    told = [interrupted(scene, 9), interrupted(scene, 14)]
-    return {"same": bool(np.array_equal(rendered(scene), whole)), "cancelled": told, "whole": last, "facts": facts(scene)}
+    """Renders that are cancelled twice, among the first samples and where some pixels get more, and then end.
+
+    checks: the confidences at which each compares its error with the target, from the second check on.
+    """
+    checks, error = [], Session.error
+
+    def note(session, confidence=0.95):
+        if confidence > 0.95:
+            checks[-1].append(confidence)
+        return error(session, confidence)
+
+    Session.error = note
+    try:
+        checks.append([])
+        scene = room(256, keeps=False, target_error=float(target))
+        whole, last = rendered(scene), facts(scene)
+        checks.append([])
+        scene = room(256, target_error=float(target))
+        told = [interrupted(scene, 9), interrupted(scene, 30)]
+        same = bool(np.array_equal(rendered(scene), whole))
+    finally:
+        Session.error = error
+    return {"same": same, "cancelled": told, "whole": last, "facts": facts(scene), "checks": checks}
 
 
 def until_killed():
