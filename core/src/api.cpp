@@ -38,14 +38,16 @@ const char *lancer_last_error(void) { return last_error; }
 
 uint32_t lancer_sizeof(uint32_t which) {
   static constexpr size_t sizes[LANCER_STRUCT_COUNT] = {
-      sizeof(lancer_mesh),         sizeof(lancer_instance),       sizeof(lancer_parameter), sizeof(lancer_lobe),
-      sizeof(lancer_material),     sizeof(lancer_light),          sizeof(lancer_camera),    sizeof(lancer_settings),
-      sizeof(lancer_progress),     sizeof(lancer_statistics),     sizeof(lancer_hit),       sizeof(lancer_vertex),
-      sizeof(lancer_light_sample), sizeof(lancer_bsdf_sample),    sizeof(lancer_attribute), sizeof(lancer_image),
-      sizeof(lancer_node),         sizeof(lancer_principled),     sizeof(lancer_world),     sizeof(lancer_lobe_info),
-      sizeof(lancer_error),        sizeof(lancer_denoised_error), sizeof(lancer_range),     sizeof(lancer_part),
-      sizeof(lancer_portal),       sizeof(lancer_made),           sizeof(lancer_motion),    sizeof(lancer_output),
-      sizeof(lancer_texel),        sizeof(lancer_bake)};
+      sizeof(lancer_mesh),           sizeof(lancer_instance),    sizeof(lancer_parameter),
+      sizeof(lancer_lobe),           sizeof(lancer_material),    sizeof(lancer_light),
+      sizeof(lancer_camera),         sizeof(lancer_settings),    sizeof(lancer_progress),
+      sizeof(lancer_statistics),     sizeof(lancer_hit),         sizeof(lancer_vertex),
+      sizeof(lancer_light_sample),   sizeof(lancer_bsdf_sample), sizeof(lancer_attribute),
+      sizeof(lancer_image),          sizeof(lancer_node),        sizeof(lancer_principled),
+      sizeof(lancer_world),          sizeof(lancer_lobe_info),   sizeof(lancer_error),
+      sizeof(lancer_denoised_error), sizeof(lancer_range),       sizeof(lancer_part),
+      sizeof(lancer_portal),         sizeof(lancer_made),        sizeof(lancer_motion),
+      sizeof(lancer_output),         sizeof(lancer_texel),       sizeof(lancer_bake)};
   return which < LANCER_STRUCT_COUNT ? uint32_t(sizes[which]) : 0;
 }
 

@@ -179,8 +179,7 @@ public:
 
 struct SessionObject {
   SessionObject(std::shared_ptr<const Scene> scene, const Identity &identity, std::unique_ptr<const Bake> bake = nullptr)
-      : session(std::move(scene), read_camera(identity.camera), read_settings(identity.settings), identity,
-                std::move(bake)) {}
+      : session(std::move(scene), read_camera(identity.camera), read_settings(identity.settings), identity, std::move(bake)) {}
   std::mutex mutex;
   Session session;
 };

@@ -33,8 +33,8 @@ struct MatteShare {
 
 // The extras of samples that follow one another.
 struct Extras {
-  std::vector<float> channels; // [sample][ExtraLayout::channels()]
-  std::vector<MatteShare> mattes;   // in no order
+  std::vector<float> channels;    // [sample][ExtraLayout::channels()]
+  std::vector<MatteShare> mattes; // in no order
 
   void begin(size_t samples, const ExtraLayout &layout) {
     channels.assign(samples * layout.channels(), 0.0f);

@@ -50,7 +50,7 @@ struct IntegratorSettings {
 #undef LANCER_MEMBER
   Splits splits{};                           // as the settings say, or as a pilot has found
   const std::atomic<bool> *cancel = nullptr; // raised: a batch may end with invalid results
-  const Bake *bake = nullptr;            // of a bake, PATH
+  const Bake *bake = nullptr;                // of a bake, PATH
 
   IntegratorKind kind() const { return static_cast<IntegratorKind>(integrator); }
   FilterKind filter() const { return static_cast<FilterKind>(pixel_filter); }

@@ -210,8 +210,8 @@ constexpr uint64_t kProjectedEach = 8;
 Background find_background(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const Film &film) {
   // Surfaces and the camera are projected as they stand.
   const bool moves = scene.motion.shutter.opens() && ((scene.features & kFeatureMotion) || !scene.motion.cameras.empty());
-  if (settings.kind() != IntegratorKind::Path || settings.bake || settings.samples < kLeastPlanned ||
-      settings.all_features() || moves || !has_even_background(scene, camera))
+  if (settings.kind() != IntegratorKind::Path || settings.bake || settings.samples < kLeastPlanned || settings.all_features() ||
+      moves || !has_even_background(scene, camera))
     return Background();
   Background background;
   background.coverage = Coverage(scene, camera, settings.filter_width, kProjectedEach * film.width() * film.height());

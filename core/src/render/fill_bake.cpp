@@ -43,7 +43,8 @@ bool finite(const lancer_texel &texel) {
 Bake read_bake(const lancer_bake &source, const Scene &scene, const Camera &camera) {
   const uint64_t count = uint64_t(camera.width) * camera.height;
   if (source.texel_count != count)
-    bad_argument("bake: " + std::to_string(source.texel_count) + " texels, the camera has " + std::to_string(count) + " pixels");
+    bad_argument("bake: " + std::to_string(source.texel_count) + " texels, the camera has " + std::to_string(count) +
+                 " pixels");
   if (!source.texels)
     bad_argument("bake: texels is NULL");
   if (source.view > LANCER_BAKE_SKY)

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "compile/scene.h"
-#include "scene/camera.h"
 #include "scene/bake.h"
+#include "scene/camera.h"
 
 struct lancer_bake;
 

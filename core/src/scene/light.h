@@ -75,7 +75,8 @@ struct World {
   bool varies() const { return radiance.varies(); }
   // Valid until the world changes.
   operator WorldView() const {
-    return {program, radiance, schedule, hidden_from, map_resolution, lit_surfaces, ambient, light_group, outputs, output_nodes};
+    return {program,      radiance, schedule,    hidden_from, map_resolution,
+            lit_surfaces, ambient,  light_group, outputs,     output_nodes};
   }
 };
 

@@ -237,8 +237,8 @@ void PathIntegrator::shade_block() {
         View view = surface_.view(lane, path.length + t * unit,
                                   path.light_path((t - surface_.ray(lane).tmin) * unit / scene_.normalisation.scale, t * unit));
         if (at_texels_)
-      view.footprint = texels_->width(path_[lane]);
-    view.pixel = path.sampler.pixel();
+          view.footprint = texels_->width(path_[lane]);
+        view.pixel = path.sampler.pixel();
         view.sample = path.sampler.sample();
         view.dimension = path.nodes_dimension();
         view.sharp = path.sharp;

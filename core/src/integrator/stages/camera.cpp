@@ -7,8 +7,7 @@ const CameraKernel &camera_kernel() { return LANCER_CHOSEN_SHADING_KERNEL(camera
 CameraStage::CameraStage(const Camera &camera, const Motion &motion, const IntegratorSettings &settings)
     : camera_(camera), motion_(motion), filter_(settings.filter(), settings.filter_width), seed_(settings.seed),
       middle_(settings.kind() != IntegratorKind::Path && settings.samples == 1),
-      plain_(!middle_ && !camera.is_panorama() && !camera.is_stereo() &&
-             !(motion.shutter.opens() && !motion.cameras.empty()) &&
+      plain_(!middle_ && !camera.is_panorama() && !camera.is_stereo() && !(motion.shutter.opens() && !motion.cameras.empty()) &&
              (!(camera.lens_radius > 0.0) || camera.aperture_blades < 3)),
       kernel_(camera_kernel()) {
   addresses_.key = hash(settings.seed);

@@ -76,8 +76,7 @@ void LinkedLights::add_face(size_t ray, const Surface &surface, const glm::vec3 
   const glm::dvec3 ng(surface.ng);
   const double side = glm::dot(ng, rays_[ray].d) < 0.0 ? 1.0 : -1.0;
   met_.push_back({ray, radiance, emitter_weight(scene_, from, emitter, surface), emitter.hidden_from(), emitter.links(),
-                  scene_.geometry.instances[surface.instance].light_group,
-                  surface.p + side * surface.offset * ng});
+                  scene_.geometry.instances[surface.instance].light_group, surface.p + side * surface.offset * ng});
 }
 
 } // namespace lancer

@@ -81,7 +81,8 @@ float emitter_weight(const Scene &scene, const Scattering &from, const Emitter &
   if (!(from.pdf > 0.0))
     return 1.0f;
   const double pdf = emitter.face_pdf(scene.geometry, from.p, surface);
-  return mis_weight(from.pdf, pdf * scene.lights.probability(scene.geometry, from.query(), emitter, surface.time, surface.primitive));
+  return mis_weight(from.pdf,
+                    pdf * scene.lights.probability(scene.geometry, from.query(), emitter, surface.time, surface.primitive));
 }
 
 float MetLights::emission_weight(const Scattering &from, const Surface &surface) const {

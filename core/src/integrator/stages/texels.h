@@ -8,8 +8,8 @@
 #include "compile/scene.h"
 #include "integrator/sample.h"
 #include "integrator/stages/numbers.h"
-#include "scene/camera.h"
 #include "scene/bake.h"
+#include "scene/camera.h"
 
 #include <span>
 #include <vector>
@@ -25,8 +25,8 @@ public:
   // Begins every sample: clears its result and calls begin(sample, sampler), which returns the ray to fill, unless the texel is
   // empty. hits: of the rays, in their order; a hit that is not valid lets the ray see the sky.
   template <class Begin>
-  void start(std::span<const SampleAddress> addresses, bool with_light, std::span<SampleResult> results,
-             std::vector<Hit> &hits, Begin &&begin) {
+  void start(std::span<const SampleAddress> addresses, bool with_light, std::span<SampleResult> results, std::vector<Hit> &hits,
+             Begin &&begin) {
     hits.clear();
     widths_.clear();
     for (size_t i = 0; i < addresses.size(); ++i) {
