@@ -53,7 +53,8 @@ class Bake:
         camera = _camera(self._depsgraph, width, height)
         options = ExportOptions(passes=asked.passes, picture=camera)
         shot, messages = export_scene(self._depsgraph, options, self._is_over)
-        changes = {"film_transparent": True}
+        # The roughness of the first surface alone.
+        changes = {"film_transparent": True, "blended_features": True}
         if asked.bounces is not None:
             changes["max_bounces"] = asked.bounces
         if asked.kind not in ("COMBINED", "DIFFUSE", "GLOSSY", "TRANSMISSION", "AO"):

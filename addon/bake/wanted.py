@@ -53,7 +53,8 @@ class Wanted(NamedTuple):
         if self.whole:
             return read(Pass.COMBINED)
         rgb = self._sum(read)
-        return np.concatenate([rgb, np.ones((*rgb.shape[:2], 1), np.float32)], axis=2)
+        alpha = np.ones((*rgb.shape[:2], 1), np.float32) if self.kind in _DATA else read(Pass.COMBINED)[..., 3:]
+        return np.concatenate([rgb, alpha], axis=2)
 
     def _sum(self, read):
         if self.kind in _DATA:

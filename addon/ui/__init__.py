@@ -5,6 +5,7 @@ import bpy
 from ..host.registering import add_all
 from . import (
     adopted,
+    bake,
     camera,
     check,
     described,
@@ -23,6 +24,7 @@ from . import (
 CLASSES = (
     *render.CLASSES,
     *resume.CLASSES,
+    *bake.CLASSES,
     *messages.CLASSES,
     *uses.CLASSES,
     *check.CLASSES,

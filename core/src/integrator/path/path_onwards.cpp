@@ -62,7 +62,7 @@ void PathIntegrator::add_ambient(uint32_t lanes) {
     const glm::vec3 light = path.beta * surface_.opacity(lane) * matt * settings_.ambient;
     if (light == glm::vec3(0.0f))
       return;
-    WaitingLight waiting = film_.waiting(path);
+    WaitingLight waiting = film_.waiting(path, scene_.lights.environment().light_group());
     waiting.indirect = path.scatterings > 0;
     waiting.has_passes = false;
     shadow_.push(ambient_.ray(lane, surface_), waiting, light, path.passed_through);

@@ -59,10 +59,12 @@ template <class F> struct Mixture {
   F roughness{0.0f}; // as of shader nodes
 };
 
-// Without blending, transmitted light is treated as mirrored. ended: lanes at the end of a path, where no lobe scatters.
+// Without blending, transmitted light is treated as mirrored. ended: lanes at the end of a path, where no lobe scatters. baked:
+// the roughness is that of bakes, which leave diffuse lobes out, as in Cycles.
 template <class F>
-LANCER_LANE Mixture<F> mix(const Bsdf<F> &bsdf, const Vec3<F> &transmittance, MaskOf<F> ended, bool blended) {
+LANCER_LANE Mixture<F> mix(const Bsdf<F> &bsdf, const Vec3<F> &transmittance, MaskOf<F> ended, bool blended, bool baked) {
   const F zero(0.0f);
+  F rough = zero; // weights of the lobes in the roughness
   Mixture<F> mixture;
   if (!blended) {
     mixture.specular = transmittance;
@@ -80,13 +82,15 @@ LANCER_LANE Mixture<F> mix(const Bsdf<F> &bsdf, const Vec3<F> &transmittance, Ma
     mixture.normal += weight * (is_hair(lobe, Hair::Huang) ? frame.t : frame.n);
     mixture.all += weight;
     mixture.matt += share * weight;
-    if (blended)
+    if (blended && !(baked && lobe.component == Component::Diffuse)) {
       mixture.roughness += weight * sqrt(alpha);
+      rough += weight;
+    }
     mixture.diffuse = select(there, mixture.diffuse + share * albedo, mixture.diffuse);
     mixture.specular = select(there, mixture.specular + (1.0f - share) * albedo, mixture.specular);
   }
   mixture.normal = select(mixture.all > zero, mixture.normal / mixture.all, mixture.normal);
-  mixture.roughness = select(mixture.all > zero, mixture.roughness / mixture.all, zero);
+  mixture.roughness = select(rough > zero, mixture.roughness / rough, zero);
   return mixture;
 }
 

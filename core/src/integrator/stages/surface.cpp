@@ -19,7 +19,8 @@ MeansWanted means_wanted(const IntegratorSettings &settings) {
           .matt_normal = passes.occlusion() || settings.ambient > 0.0f,
           .shown = passes.components() || settings.ambient > 0.0f,
           .mixture = passes.guides(),
-          .blended = settings.blended_features};
+          .blended = settings.blended_features,
+          .baked = settings.bake != nullptr};
 }
 
 } // namespace

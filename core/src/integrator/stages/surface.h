@@ -81,6 +81,7 @@ struct alignas(64) LobeBlock {
 struct MeansWanted {
   bool normal = false, matt_normal = false, shown = false, mixture = false;
   bool blended = false; // Mixture by the rule of Blender 5.2
+  bool baked = false;   // roughness by that of bakes
 };
 struct alignas(64) MeanBlock {
   Floats normal[3], matt_normal[3]; // mean normals of all lobes and of the diffuse ones

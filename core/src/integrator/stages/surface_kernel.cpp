@@ -145,7 +145,8 @@ void describe(const MaterialBlock &materials, const LobeBlock &lobes, const Mean
       store3(means.shown[component], first, bsdf.shown(static_cast<Component>(component)));
     if (!wanted.mixture)
       continue;
-    const Mixture<F> mixture = mix(bsdf, load3(materials.transmittance, first), some(materials.ends, first), wanted.blended);
+    const Mixture<F> mixture =
+        mix(bsdf, load3(materials.transmittance, first), some(materials.ends, first), wanted.blended, wanted.baked);
     store3(means.mixed_normal, first, mixture.normal);
     store3(means.mixed_diffuse, first, mixture.diffuse);
     store3(means.mixed_specular, first, mixture.specular);

@@ -28,9 +28,11 @@ Weights off_corners(const Weights &at) {
 
 Weights place_on(const Texel &texel, const Sampler &sampler) {
   const Weights middle = off_corners({texel.weights[0], texel.weights[1]});
-  const Weights dx(texel.dx[0], texel.dx[1]), dy(texel.dy[0], texel.dy[1]);
   // The first sample takes the middle, as in Cycles: passes of the first sample show the middle of the texel.
-  glm::dvec2 u = sampler.sample() == 0 ? glm::dvec2(0.5) : glm::dvec2(sampler.get2(kDimensionPixel));
+  if (sampler.sample() == 0)
+    return middle;
+  const Weights dx(texel.dx[0], texel.dx[1]), dy(texel.dy[0], texel.dy[1]);
+  glm::dvec2 u(sampler.get2(kDimensionPixel));
   uint32_t key = hash_combine(sampler.pixel(), sampler.sample());
   for (int tried = 0; tried < kTries; ++tried) {
     const Weights at = middle + (u.x - 0.5) * dx + (u.y - 0.5) * dy;
