@@ -17,7 +17,6 @@ _PASSES = (
     "use_pass_glossy_direct", "use_pass_glossy_indirect", "use_pass_glossy_color", "use_pass_transmission_direct",
     "use_pass_transmission_indirect", "use_pass_transmission_color", "use_pass_emit", "use_pass_environment",
     "use_pass_ambient_occlusion", "use_pass_cryptomatte_object", "use_pass_cryptomatte_material", "use_pass_cryptomatte_asset",
-    "pass_cryptomatte_depth",
 )  # fmt: skip
 
 

@@ -5,6 +5,7 @@ import math
 from enum import IntEnum
 
 from ..bindings.enums import Integrator
+from ..bindings.numbered_pass import extras
 from .schedule import CANCELLED, DENOISED_POWER, POWER, SAMPLES, TARGET, TIME
 
 # Shares of light below this are not reported.
@@ -182,7 +183,7 @@ def fields(numbers, settings):
 def _changed(settings):
     for field in dataclasses.fields(settings):
         value = getattr(settings, field.name)
-        if field.name in ("passes", "threads", "tile_size", "seed"):
+        if field.name in ("passes", "threads", "tile_size", "seed", *extras(())):
             continue
         if isinstance(value, IntEnum):
             value = value.name

@@ -51,6 +51,7 @@ OF_OTHERS = {
     "instance_collection": "of instancers, of which nodes read attributes",
     "instance_type": "of instancers, of which nodes read attributes",
     "look": "of an object's table row; of the display",
+    "pass_cryptomatte_depth": "the number of passes, which the engine registers",
     "preview_dicing_rate": "divides meshes in views",
     "matrix": "of cameras and lamps in a snapshot",
     "matrix_world": "the result of location, rotation and scale",

@@ -71,7 +71,7 @@ def test_passes_that_the_artist_makes(case):
     assert set(got["passes"]) - set(wanted) <= {"Render Time"} and got["messages"] == []
     assert got["difference"] < 10 * 2.0**-24 and all(mean > 0.0 for mean in got["means"])
     # The floor alone gives values, each pixel by the share of its samples that see it.
-    assert got["tints"] == [[0.0, 0.0, 0.0, 0.0], [0.25, -1.0, 2.0, 1.0]] and got["numbers"] == [0.0, 0.75]
+    assert got["tints"] == [[0.0, 0.0, 0.0, 0.0], [0.25, 1.5, 2.0, 1.0]] and got["numbers"] == [0.0, 0.75]
     assert got["samples"] == [1.0]
     assert got["time"] is None or got["time"] > 0.0
 

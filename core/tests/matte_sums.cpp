@@ -22,7 +22,7 @@ Extras random_extras(uint32_t samples, uint32_t ids) {
   extras.begin(samples * kPixels, kObjects);
   for (uint32_t sample = 0; sample < samples * kPixels; ++sample)
     for (uint32_t count = random() % 4; count > 0; --count)
-      extras.mattes.push_back({sample, std::exp2(exponent(random)), {1 + random() % ids, 0, 0}});
+      extras.mattes.push_back({sample, std::exp2(exponent(random)), {1 + uint32_t(random()) % ids, 0, 0}});
   return extras;
 }
 

@@ -99,7 +99,7 @@ def chosen_passes():
     floor = bpy.data.objects["Plane"].data.materials[0]
     inner = bpy.data.node_groups.new("Inside", "ShaderNodeTree")
     for tree, name, socket, value in (
-        (floor.node_tree, "Tint", "Color", (0.25, -1.0, 2.0, 1.0)),
+        (floor.node_tree, "Tint", "Color", (0.25, 1.5, 2.0, 1.0)),
         # As in Cycles, also nodes inside groups write.
         (inner, "Number", "Value", 0.75),
         (floor.node_tree, "Nowhere", "Value", 5.0),
