@@ -20,11 +20,13 @@ def continues(samples):
 
 
 def test_more_samples_of_a_picture(case):
-    first, second, third = case("more_samples")
+    (first, second, third), (full, empty) = case("more_samples")
     assert first == {"same": True, "facts": [24, "samples", continues(4)], "files": [FILE]}
     assert second == {"same": True, "facts": [40, "samples", continues(24)], "files": [FILE]}
     # A third render has nothing to do.
     assert third == {"same": True, "facts": [40, "samples", continues(40)], "files": [FILE]}
+    assert [word for word in full if word.startswith("ViewLayer: 40 samples, ") and word.endswith(" MB")]
+    assert "This frame has no file" in empty and full[-1] == empty[-1] == "lancer.delete_resume_files"
 
 
 @pytest.mark.parametrize("target", [0.0, 0.003])

@@ -6,11 +6,13 @@ from pathlib import Path
 
 import bpy
 import numpy as np
+import recording
 import stage
 
 from addon.bindings.session import Session
 from addon.engine import last_messages, last_statistics, resume, resume_file, stepped_session
 from addon.engine.render_engine import LancerRenderEngine
+from addon.ui.resume import LANCER_RENDER_PT_resume
 
 
 def room(samples, keeps=True, **settings):
@@ -81,7 +83,14 @@ def more_samples():
         result.append({"same": bool(np.array_equal(rendered(scene), whole)), "facts": facts(scene), "files": files()})
     # Nothing is left to render.
     result.append({"same": bool(np.array_equal(rendered(scene), whole)), "facts": facts(scene), "files": files()})
-    return result
+    panel = [panel_of(scene)]
+    clear()
+    return result, [*panel, panel_of(scene)]
+
+
+def panel_of(scene):
+    """Return the words of the panel."""
+    return recording.draw(LANCER_RENDER_PT_resume, recording.Context(engine="LANCER", scene=scene)).words
 
 
 def cancelled(target):
