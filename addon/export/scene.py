@@ -35,11 +35,11 @@ _POLL_EVERY = 0.005
 class ExportOptions:
     camera: object = None  # the camera object; None is the scene's
     passes: tuple = (Pass.COMBINED,)
-    picture: object = None  # the snapshot.Camera of a picture that no camera object takes: a bake's
     kept: object = None  # the Kept of earlier frames
     parts: object = None  # the Parts of earlier exports
     on_mesh: object = None  # is called with each MeshData as soon as it is read
     is_preview: bool = False  # of a material, a world or a lamp
+    picture: object = None  # the snapshot.Camera of a picture that no camera object takes: a bake's
     # For motion: the Shutter, a function that evaluates the depsgraph at a time in frames, and the ShaderCache of another time.
     shutter: object = None
     set_frame: object = None
