@@ -10,6 +10,7 @@ from ..bindings.enums import AlphaMode, Coordinate, Environment, Extension, Node
 from ..bindings.parameters import kept, reached
 from ..messages.severity import Severity
 from .graph import NodeGraph
+from .lights import lit_surfaces
 from .outputs import read_outputs
 from .shader_cache import Sources
 from .sockets import output_node
@@ -75,6 +76,7 @@ def export_world(world, images, depsgraph, messages, aovs=()):
         outputs=outputs,
         hidden_from=hidden,
         map_resolution=cycles.sample_map_resolution if method == "MANUAL" else 0,
+        lit_surfaces=lit_surfaces(world),
     )
     return Sky(sky, graph.sources)
 

@@ -81,6 +81,7 @@ class LANCER_DATA_PT_light_settings(LancerLightPanel, bpy.types.Panel):
         # Prefer Cycles' own switch in the versions that have it, in which use_shadow is EEVEE's.
         if not setting(row, "cast_shadow", cycles):
             row.prop(light, "use_shadow", text="Cast Shadow")
+        setting(column, "max_bounces", cycles)
         if light.type == "AREA":
             setting(column, "is_portal", cycles, text="Portal")
 

@@ -140,7 +140,7 @@ class LancerLinkingPanel(LancerPanel):
     @classmethod
     def poll(cls, context):
         thing = context.object
-        return super().poll(context) and hasattr(thing, "light_linking") and thing.type in {*_SURFACES, "LIGHT"}
+        return super().poll(context) and thing is not None and thing.type in {*_SURFACES, "LIGHT"}
 
     def draw(self, context):
         linking = context.object.light_linking
@@ -174,6 +174,7 @@ CLASSES = (
     LANCER_OBJECT_PT_ray_visibility,
     LANCER_OBJECT_PT_light_group,
     LANCER_OBJECT_PT_simplify,
-    LANCER_OBJECT_PT_light_linking,
-    LANCER_OBJECT_PT_shadow_linking,
 )
+# Blender has light linking since 4.0.
+if "light_linking" in bpy.types.Object.bl_rna.properties:
+    CLASSES += (LANCER_OBJECT_PT_light_linking, LANCER_OBJECT_PT_shadow_linking)

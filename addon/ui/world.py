@@ -92,6 +92,7 @@ class LANCER_WORLD_PT_settings(LancerWorldPanel, bpy.types.Panel):
         row = column.row()
         row.active = cycles.sampling_method == "MANUAL"
         setting(row, "sample_map_resolution", cycles)
+        setting(column, "max_bounces", cycles)
 
 
 class LANCER_WORLD_PT_classic(LancerWorldPanel, bpy.types.Panel):

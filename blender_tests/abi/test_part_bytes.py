@@ -92,12 +92,15 @@ def test_only_what_passes_need_is_kept():
 
 def test_sums_follow_from_single_samples():
     """So do the differences of their halves, the brightest samples, and the light of clamping and of the last bounces."""
-    snapshot = room(4, clamp_indirect=0.05, max_bounces=2)
+    limits = {"clamp_indirect": 0.05, "clamp_direct": 0.05, "max_bounces": 2, "diffuse_bounces": 0, "no_reflections": True}
+    snapshot = room(4, **limits)
     with opened(snapshot) as worker:
         single = [ReadPart(rendered(worker, all_of(worker, number, 1))) for number in range(4)]
         whole = ReadPart(rendered(worker, all_of(worker, 0, 4)))
     assert whole.rays == tuple(np.sum([one.rays for one in single], axis=0))
-    assert whole.light == [sum(one.light[i] for one in single) for i in range(3)] and min(whole.light) > 0
+    assert whole.light == [sum(one.light[i] for one in single) for i in range(6)]
+    # The room has no caustics.
+    assert [light > 0 for light in whole.light] == [True, True, True, False, True, True]
     # The luminance of BT.709, with coefficients of 32 bits.
     weights = np.float32([0.2126, 0.7152, 0.0722]).astype(np.float64)
     assert whole.matte_kinds == 3 and whole.extra == 3 * 4 + 4 + 1

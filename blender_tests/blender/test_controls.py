@@ -27,6 +27,14 @@ ELSEWHERE = {
 }
 # Names in the export's source that are also names of settings without effect on this test's scene.
 OF_OTHERS = {
+    "use_multiview": "of views with stereoscopy, where nothing is culled",
+    "use_pole_merge": "of views with stereoscopy, which the engine places",
+    "pole_merge_angle_to": "of views with stereoscopy, which the engine places",
+    "pole_merge_angle_from": "of views with stereoscopy, which the engine places",
+    "interocular_distance": "of views with stereoscopy, which the engine places",
+    "convergence_mode": "of views with stereoscopy, which the engine places",
+    "convergence_distance": "of views with stereoscopy, which the engine places",
+    "ao_bounces": "of Fast GI in views",
     "action": "of animated objects; of the display of a camera's safe areas",
     "clip_max_y": "of curves of nodes",
     "clip_min_y": "of curves of nodes",
@@ -61,8 +69,8 @@ OF_OTHERS = {
     "show_instancer_for_viewport": "of instancers, whose own surface the depsgraph leaves out",
     "shadow_terminator_offset": "told as not supported, in the Blenders that keep it in Cycles",
     "title": "a string's method; of the display's safe areas",
-    "texture_limit": "told as not supported, in views",
-    "texture_resolution": "told as not supported, in views",
+    "texture_limit": "of views",
+    "texture_resolution": "of views, and without effect before 5.2",
     "use_adaptive_subdivision": "of the modifier since 5.0",
     "use_light_tree": "acts on flattened area lamps alone",
     "use_clip": "of curves of nodes",

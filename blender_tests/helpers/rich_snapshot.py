@@ -8,10 +8,12 @@ from tiny_scenes import quad, showroom
 from addon.bindings.enums import Domain, LobeKind, NodeKind
 from addon.bindings.snapshot import (
     Image,
+    InstanceMotion,
     Lobe,
     Material,
     MeshAttribute,
     MeshData,
+    Motion,
     Node,
     NodeRef,
     ObjectAttribute,
@@ -37,6 +39,8 @@ def rich():
             MeshAttribute("second map", np.arange(12).reshape(6, 2) / 8.0),
             MeshAttribute("weight", np.arange(4).reshape(4, 1) / 8.0, Domain.VERTEX),
         ),
+        moved_positions=np.stack([scale * np.asarray(plain.positions) for scale in (1.0, 2.0, 3.0)]),
+        moved_normals=np.tile(np.float32([0, 0, 1]), (3, 4, 1)),
     )
     pictures = (
         Image("bytes", np.arange(24).reshape(2, 3, 4).astype(np.uint8)),
@@ -53,10 +57,12 @@ def rich():
         nodes=(Node(), seen),
     )
     room = showroom(16)
+    moved = np.tile(np.eye(4)[:3], (2, 3, 1, 1))
     heat = ObjectAttribute("heat", np.arange(4 * len(room.instances)).reshape(-1, 4) / 8.0)
     return dataclasses.replace(
         room,
-        instances=dataclasses.replace(room.instances, attributes=(heat,)),
+        instances=dataclasses.replace(room.instances, attributes=(heat,), motions=(InstanceMotion([0, 1], moved),)),
+        motion=Motion(np.ones(3), (room.camera,) * 3, rolling=True),
         meshes=(*room.meshes, mesh),
         images=pictures,
         materials=(*room.materials, paint),

@@ -39,7 +39,7 @@ struct Picture {
   Bytes part() const {
     Totals totals;
     totals.rays.camera = 7;
-    totals.energy.clip(0.5f);
+    Energy::remove(totals.energy.clipped, 0.5f);
     Bytes bytes(part_size(film));
     write_part(film, identity, Splits{}, totals, bytes);
     return bytes;

@@ -2,7 +2,7 @@
 
 from .. import parts
 from .catalogue import case, variants
-from .nodes import shader
+from .nodes import shader, world
 from .stages import ball, camera, floor, lamp, sky
 
 
@@ -64,7 +64,9 @@ def lamp_bounces(scene, limit):
 
 @case(bounces=3)
 def sky_bounces(scene):
+    """A sky that is sampled as a light, which an even one is not."""
     room(scene, _matt())
+    world(scene, lambda nodes: nodes.add("ShaderNodeBackground", Color=nodes.add("ShaderNodeTexGradient"), Strength=1.5))
     scene.world.cycles.max_bounces = 0
 
 

@@ -275,11 +275,12 @@ class _Stage:
         place = self.cube.location.copy()
         cycles.use_camera_cull = self.cube.cycles.use_camera_cull = True
         cycles.camera_cull_margin = 0.0
-        while not self._is_culled():
-            self.cube.location.x += 0.1
+        self.cube.location.x = 1.5
+        while not self._is_culled() and self.cube.location.x < 9.0:
+            self.cube.location.x += 0.3
         yield now(cycles, self.cube.cycles)
         cycles.use_camera_cull, cycles.use_distance_cull, self.cube.cycles.use_distance_cull = False, True, True
-        cycles.distance_cull_margin = 0.9 * ((self.cube.location - self.camera.location).length - 2.0)
+        cycles.distance_cull_margin = 0.9 * ((self.cube.location - self.camera.location).length - 1.0)
         yield now(cycles, self.cube.cycles)
         cycles.use_distance_cull = False
         self.cube.location = place

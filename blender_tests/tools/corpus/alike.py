@@ -88,7 +88,7 @@ def _render(render, pixels, threads):
         # Blender's own limit is 4 pixels.
         setattr(render, axis, max(4, round(getattr(render, axis) * pixels / longer)))
     render.resolution_percentage = 100
-    return [*_take(render, (("use_freestyle", False, "Freestyle")))]
+    return [*_take(render, (("use_freestyle", False, "Freestyle"), ("use_multiview", False, "stereoscopy")))]
 
 
 def choose_layer(scene):
