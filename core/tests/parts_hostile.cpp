@@ -133,19 +133,20 @@ TEST(PartsWithHostileTotals, AreRefused) {
   const std::string words = "its sums of rays or light are no numbers";
   for (const int64_t last :
        {std::numeric_limits<int64_t>::min(), std::numeric_limits<int64_t>::max(), kMostDigit + 1, -kMostDigit - 1})
-    for (uint32_t sum = 0; sum < 3; ++sum)
+    for (uint32_t sum = 0; sum < 6; ++sum)
       expect_refused([=](Made &made) { made.digits[sum][31] = last; }, words);
   for (const int64_t digit : {int64_t(-1), int64_t(256)})
     expect_refused([=](Made &made) { made.digits[2][30] = digit; }, words);
-  // Clamping removes an absolute value.
-  expect_refused([](Made &made) { made.digits[0][31] = -1; }, words);
+  // Clamping and limits remove absolute values.
+  for (uint32_t sum = 0; sum < 4; ++sum)
+    expect_refused([=](Made &made) { made.digits[sum][31] = -1; }, words);
   for (uint32_t count = 0; count < 4; ++count)
     expect_refused([=](Made &made) { made.counts[count] = ~uint64_t(0); }, words);
 }
 
 // Each part is possible alone.
 TEST(PartsWithHostileTotals, AreRefusedTogether) {
-  const auto last_digit = [](Made &made) { made.digits[1][31] = -kMostDigit; };
+  const auto last_digit = [](Made &made) { made.digits[4][31] = -kMostDigit; };
   const auto rays = [](Made &made) { made.counts[3] = uint64_t(1) << 60; };
   for (const std::function<void(Made &)> &change : std::vector<std::function<void(Made &)>>{last_digit, rays}) {
     const MadeJoiner joiner;

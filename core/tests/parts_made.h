@@ -46,7 +46,7 @@ struct MadeTile {
 struct Made {
   lancer_part description{};
   uint64_t counts[4] = {30, 20, 10, 40};
-  int64_t digits[3][32] = {};
+  int64_t digits[6][32] = {};
   std::vector<MadeTile> tiles;
 
   explicit Made(std::vector<MadeTile> of = {MadeTile()}) : tiles(std::move(of)) {

@@ -124,10 +124,11 @@ void report_all(Bsdf<F> &bsdf, const Place *of, Report &add) {
   for (const Component component : {Component::Diffuse, Component::Glossy, Component::Transmission})
     add("shown", bsdf.shown(component));
   add("mean_normal", mean_normal(bsdf));
-  const Mixture<F> mixture = mix(bsdf, Vec3<F>(F(0.0f)), uniform<F>(false), true);
+  const Mixture<F> mixture = mix(bsdf, Vec3<F>(F(0.0f)), uniform<F>(false), true, false);
   add("mix: normal", mixture.normal);
   add("mix: diffuse", mixture.diffuse);
   add("mix: specular", mixture.specular);
+  add("mix: baked", Vec3<F>(mix(bsdf, Vec3<F>(F(0.0f)), uniform<F>(false), true, true).roughness));
   add("mix: matt", mixture.matt);
   add("mix: roughness", mixture.roughness);
   for (int k = 0; k < Place::kDirections; ++k) {
