@@ -215,9 +215,10 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             self._following.give_back(parts)
             kept.count_parts(self._snapshot, parts)
         self._views = views.views(self, depsgraph, self._snapshot.camera, messages)
-        if self._views[0].name and self._snapshot.motion.keys:
+        motion = self._snapshot.motion
+        if self._views[0].name and motion is not None and motion.keys:
             messages.add("with stereoscopy the motion of the camera is not blurred", "feature:camera motion with stereoscopy")
-            self._snapshot.set("motion", dataclasses.replace(self._snapshot.motion, keys=()))
+            self._snapshot.set("motion", dataclasses.replace(motion, keys=()))
         settings = self._snapshot.settings
         time_limit = self._picture.limit(settings.time_limit) / len(self._views)
         settings = dataclasses.replace(settings, time_limit=time_limit)

@@ -45,6 +45,6 @@ def register():
 
 def unregister():
     described.forget()
-    adopted.release(CLASSES)
+    adopted.release()
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)

@@ -5,7 +5,7 @@ Panels of the Cycles add-on are not adopted, since they exist only while it is e
 
 import bpy
 
-from .panel import ID
+from .panel import ID, LancerPanel
 
 # Panels of EEVEE that apply to Lancer unchanged.
 _OF_EEVEE = {
@@ -55,8 +55,8 @@ def adopt():
             panel.COMPAT_ENGINES.add(ID)
 
 
-def release(own):
-    """Release all adopted panels; own: Lancer's own classes."""
+def release():
+    """Release all adopted panels. Lancer's own share their engines, also those that the running Blender does not show."""
     for panel in bpy.types.Panel.__subclasses__():
-        if panel not in own and ID in getattr(panel, "COMPAT_ENGINES", ()):
+        if not issubclass(panel, LancerPanel) and ID in getattr(panel, "COMPAT_ENGINES", ()):
             panel.COMPAT_ENGINES.discard(ID)

@@ -46,7 +46,7 @@ def test_weak_emission_is_no_light(case):
 def test_overrides_of_the_view_layer(case):
     got = case("overrides")
     assert got["materials"] == ["clay"] * len(got["materials"]) and got["materials"] and got["samples"] == 9
-    assert got["without"] == [["default grey", "own"], 4]
+    assert got["without"] == [["default_surface", "own"], 4]
     if got["has world"]:
         # The mist stays that of the scene's world, as in Cycles.
         assert got["radiance"] == near([0.0, 0.5, 0.0]) and got["mist"] == 5.0

@@ -40,7 +40,8 @@ def measured():
     """Return by passes: (a session, the PartCosts that its parts tell)."""
     made = {}
     for passes in ((Pass.COMBINED,), (Pass.COMBINED, *view_layer.PASSES)):
-        snapshot = picture_parts.room(size=(WIDTH, HEIGHT), passes=passes)
+        plain = {"mattes": 0, "light_groups": 0, "aov_colors": 0, "aov_values": 0}
+        snapshot = picture_parts.room(size=(WIDTH, HEIGHT), passes=passes, **plain)
         with picture_parts.opened(snapshot) as session:
 
             def size(first, count, session=session):

@@ -16,8 +16,21 @@ from addon.export.moving_scene import export_picture
 from addon.export.scene import ExportOptions
 from addon.export.shutter import shutter_of
 
-# Properties that select which data-block is shown, and properties that are the data itself.
-_LEFT_OUT = {"rna_type", "engine", "name", "type", "mode", "use_fake_user", "animation_data", "preview", "preview_pause"}
+# Properties that select which data-block is shown, and properties that are the data itself. Blender 3 crashes where a slot for
+# painting is chosen that is not there.
+_LEFT_OUT = {
+    "rna_type",
+    "engine",
+    "name",
+    "type",
+    "mode",
+    "use_fake_user",
+    "animation_data",
+    "preview",
+    "preview_pause",
+    "paint_active_slot",
+    "paint_clone_slot",
+}
 _OWNERS_OF_NOTHING = (bpy.types.ID, bpy.types.AnimData)
 
 

@@ -76,7 +76,6 @@ def missing():
     scene = _lit_cube("LANCER")
     stage.camera()
     stage.light_paths_alike(scene)
-    scene.render.use_multiview = True
     for number in (1, 2):
         material = stage.shader(name=f"Wax {number}")
         tree = material.node_tree
@@ -84,10 +83,11 @@ def missing():
         stage.cube(material=material, location=(2 * number, 0, 0.5))
     # A warning does not count as a missing feature.
     scene.objects["Cube"].data.materials[0] = None
+    scene.objects["Cube"].is_shadow_catcher = True
     result = {}
     for name in ("first", "second"):
         bpy.ops.render.render()
         result[name] = dict(engine.last_missing[scene.name])
         result[f"{name} lines"] = list(engine.last_messages[scene.name])
-        scene.render.use_multiview = False
+        scene.objects["Cube"].is_shadow_catcher = False
     return result

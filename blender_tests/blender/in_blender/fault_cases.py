@@ -29,7 +29,7 @@ def as_rendered():
     calls, exported = [], []
     for name in ("render_init", "render_pre", "render_complete"):
         getattr(bpy.app.handlers, name).append(lambda *_, name=name: calls.append(name))
-    export_scene = addon.engine.render_engine.export_scene
+    export_scene = addon.engine.render_engine.export_picture
 
     def kept(*arguments):
         snapshot, messages = export_scene(*arguments)
@@ -37,9 +37,9 @@ def as_rendered():
         exported.append((_meshes(snapshot), snapshot, messages))
         return snapshot, messages
 
-    addon.engine.render_engine.export_scene = kept
+    addon.engine.render_engine.export_picture = kept
     picture = bpy.data.images.load(stage.write_exr(scene))
-    addon.engine.render_engine.export_scene = export_scene
+    addon.engine.render_engine.export_picture = export_scene
     before, done = _picture_of("before"), list(calls)
     users = {thing.name: thing.users for thing in (*bpy.data.objects, *bpy.data.collections, *bpy.data.materials)}
     statistics = dict(addon.engine.last_statistics)

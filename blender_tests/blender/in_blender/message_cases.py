@@ -74,7 +74,7 @@ def failed_layer(path):
     scene = _faulty(1)
     scene.view_layers[0].name = "First"
     scene.view_layers.new("Second")
-    genuine = engine.export_scene
+    genuine = engine.export_picture
 
     def export(depsgraph, *arguments):
         if depsgraph.view_layer.name == "First":
@@ -85,7 +85,7 @@ def failed_layer(path):
         with open(path, "w", encoding="utf-8") as file:
             json.dump(list(engine.last_messages[scene.name]), file)
 
-    engine.export_scene = export
+    engine.export_picture = export
     bpy.app.handlers.render_post.append(say)
     try:
         bpy.ops.render.render()
@@ -93,7 +93,7 @@ def failed_layer(path):
         return str(error)
     finally:
         bpy.app.handlers.render_post.remove(say)
-        engine.export_scene = genuine
+        engine.export_picture = genuine
 
 
 def left_out():

@@ -133,14 +133,16 @@ def pictures():
     scene.render.use_persistent_data = True
     compared, results = [], {}
 
-    def export(depsgraph, options, poll):
+    export_picture = render_engine.export_picture
+
+    def export(depsgraph, options, frame_set, poll):
         got, messages = export_scene(depsgraph, options, poll)
         whole, others = export_scene(depsgraph, dataclasses.replace(options, parts=None, on_mesh=None), poll)
         same = messages.lines() == others.lines()
         compared.append((options.parts and dict(options.parts.counts), plain(got) == plain(whole), same))
         return got, messages
 
-    render_engine.export_scene = export
+    render_engine.export_picture = export
     try:
         for name, edit in {"first": lambda: None, **_EDITS_OF_PICTURES}.items():
             edit()
@@ -148,7 +150,7 @@ def pictures():
             (results[name],) = compared
             compared.clear()
     finally:
-        render_engine.export_scene = export_scene
+        render_engine.export_picture = export_picture
     return results
 
 

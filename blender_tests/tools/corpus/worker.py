@@ -85,7 +85,7 @@ class _timed_export:
     """A context: the list of the seconds of each export within it."""
 
     def __enter__(self):
-        self.export, seconds = addon.engine.render_engine.export_scene, []
+        self.export, seconds = addon.engine.render_engine.export_picture, []
 
         def timed(*arguments):
             start = time.perf_counter()
@@ -94,11 +94,11 @@ class _timed_export:
             finally:
                 seconds.append(time.perf_counter() - start)
 
-        addon.engine.render_engine.export_scene = timed
+        addon.engine.render_engine.export_picture = timed
         return seconds
 
     def __exit__(self, *_):
-        addon.engine.render_engine.export_scene = self.export
+        addon.engine.render_engine.export_picture = self.export
 
 
 TASKS = {"open": open_file, "render": render, "denoised": denoised}
