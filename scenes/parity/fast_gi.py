@@ -15,7 +15,7 @@ def _fast(scene, method, distance, factor=1.0, bounces=1):
     light.ao_factor, light.distance = factor, distance
 
 
-@variants("LOBES", values={"1": (1, {"quick": True}), "2": 2}, bounces=4, limited={"use_fast_gi": True})
+@variants("LOBES", values={"1": 1, "2": 2}, bounces=4, limited={"use_fast_gi": True})
 def fast_gi_replace(scene, bounces):
     room(scene, glossy(), glass())
     _fast(scene, "REPLACE", 1.5, 0.7, bounces)

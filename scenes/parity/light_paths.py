@@ -87,7 +87,7 @@ def clamp_direct(scene, _limit):
     values={
         "reflective": ("reflective", {"limited": {"caustics_reflective": False}}),
         "refractive": ("refractive", {"limited": {"caustics_refractive": False}}),
-        "both": ("both", {"limited": {"caustics_reflective": False, "caustics_refractive": False}, "quick": True}),
+        "both": ("both", {"limited": {"caustics_reflective": False, "caustics_refractive": False}}),
     },
     bounces=3,
 )
@@ -99,7 +99,7 @@ def caustics_off(scene, _which):
 
 @variants(
     "LOBES",
-    values={"1": (1.0, {"limited": {"blur_glossy": 1.0}}), "10": (10.0, {"limited": {"blur_glossy": 10.0}, "quick": True})},
+    values={"1": (1.0, {"limited": {"blur_glossy": 1.0}}), "10": (10.0, {"limited": {"blur_glossy": 10.0}})},
     bounces=3,
 )
 def filter_glossy(scene, _value):

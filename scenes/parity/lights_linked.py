@@ -8,7 +8,8 @@ from .nodes import shader
 from .stages import ball, camera, floor, sky
 
 _SINCE = (4, 0)
-_EMITTERS = {"lamp": ("lamp", {"quick": True}), "ball": "ball", "sun": "sun", "mesh": ("mesh", {"quick": True})}
+_EMITTERS = {kind: kind for kind in ("lamp", "ball", "sun", "mesh")}
+_QUICK = _EMITTERS | {kind: (kind, {"quick": True}) for kind in ("lamp", "mesh")}
 
 
 def _link(emitter, member, state, *things):
@@ -69,14 +70,14 @@ def light_linking_exclude(scene, kind):
     _link(_emitter(scene, kind), "receiver_collection", "EXCLUDE", bottom)
 
 
-@variants(values=_EMITTERS, since=_SINCE)
+@variants(values=_QUICK, since=_SINCE)
 def shadow_linking_exclude(scene, kind):
     """The ball casts no shadow of the emitter."""
     _, _, right = _stage(scene)
     _link(_emitter(scene, kind), "blocker_collection", "EXCLUDE", right)
 
 
-@variants(values=_EMITTERS, since=_SINCE)
+@variants(values=_QUICK, since=_SINCE)
 def shadow_linking_include(scene, kind):
     """The block alone casts a shadow of the emitter."""
     _, left, _ = _stage(scene)

@@ -110,7 +110,7 @@ def motion_particles(scene):
     scene.frame_set(6)
 
 
-@case(quick=True)
+@case()
 def motion_deformation(scene):
     """Shape keys, with smooth normals that turn."""
     _stage(scene)
@@ -251,7 +251,7 @@ def motion_panorama(scene):
     open_shutter(scene)
 
 
-@case(quick=True)
+@case()
 def motion_emitter(scene):
     """A shining block that turns and slides: its light is that of all its places."""
     floor(scene)

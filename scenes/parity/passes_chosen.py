@@ -95,7 +95,7 @@ def pass_aov(scene):
     camera(scene, (0, -4.5, 1.5), (0, 0, 0.6))
 
 
-@case(passes=("Tint", "Number"), bounces=0, quick=True)
+@case(passes=("Tint", "Number"), bounces=0)
 def pass_aov_through_panes(scene):
     """Panes of several opacities around the threshold, each of which gives values, before a ball that gives some."""
     _aov("Tint", "COLOR")
