@@ -112,8 +112,8 @@ Totals &Totals::operator-=(const Totals &other) {
 
 size_t part_size(const Film &film) {
   const Film::Channels channels = film.channels_of_pixel();
-  size_t size = kPartHead + sizeof(lancer_part) + 4 * sizeof(uint64_t) +
-                Energy::kSums * ExactSum::kDigits * sizeof(int64_t) + kPartEnd;
+  size_t size =
+      kPartHead + sizeof(lancer_part) + 4 * sizeof(uint64_t) + Energy::kSums * ExactSum::kDigits * sizeof(int64_t) + kPartEnd;
   for (size_t i = 0; i < film.tile_count(); ++i) {
     const Film::Tile &tile = film.tile(i);
     if (tile.count == 0)

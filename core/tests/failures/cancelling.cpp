@@ -131,7 +131,8 @@ lancer_status refine(lancer_scene scene, std::vector<float> &image, Moment *mome
   const lancer_camera camera = make_camera();
   lancer_settings settings = make_settings();
   settings.refines = 1;
-  settings.samples = 32;
+  // So many that the rounds take longer than a thread needs to start on a busy machine.
+  settings.samples = 128;
   lancer_session session = 0;
   EXPECT_EQ(lancer_session_create(scene, &camera, &settings, &session), LANCER_OK) << lancer_last_error();
   EXPECT_EQ(lancer_session_render(session, 0, 2), LANCER_OK) << lancer_last_error();
