@@ -1,24 +1,28 @@
 """One bake of one object: exports the scene, renders the texels range by range, and hands their picture to Blender."""
 
 import dataclasses
+import math
 
 import numpy as np
 
 from ..bindings import snapshot
 from ..bindings.abi import LancerError
-from ..bindings.enums import BakeView, InstanceKind
+from ..bindings.enums import BakeView, InstanceKind, Integrator
 from ..bindings.session import Scene, Session
-from ..bindings.texels import Texels
+from ..bindings.texels import EMPTY, Texels
 from ..export.camera import camera_fields
 from ..export.scene import ExportOptions, export_scene
 from ..host import shared_scenes
 from ..host.priority import lowered
+from ..measure import render_report
 from ..measure.schedule import Schedule
 from ..messages.messages import Messages
+from ..messages.severity import Severity
 from .pixels import read_texels, write_picture
 from .wanted import wanted
 
 _STEP = 0.05  # seconds between polls
+_LIT = frozenset({"COMBINED", "AO", "DIFFUSE", "GLOSSY", "TRANSMISSION"})
 # Samples of passes without light: a texel's mean over its own area.
 _DATA_SAMPLES = 64
 
@@ -29,6 +33,7 @@ class Bake:
     def __init__(self, engine, depsgraph, thing, tell, is_over):
         self._engine, self._depsgraph, self._thing = engine, depsgraph, thing
         self._tell, self._is_over = tell, is_over
+        self._shown = 0.0  # share of the texels that show the surface
 
     def run(self, kind, pass_filter, width, height):
         """Bake a type with Blender's bits of a pass filter into an image of this size."""
@@ -39,13 +44,18 @@ class Bake:
         result = self._engine.begin_result(0, 0, width, height, layer="bake\n")
         try:
             rows = read_texels(result.layers[0], width, height)
+            self._shown = float(np.mean(rows["triangle"] != EMPTY))
+            if self._shown == 0.0:
+                return
             shot = self._export(asked, width, height)
             texels = Texels(rows, self._instance(shot.instances), _view(self._depsgraph.scene, kind))
             self._engine.update_stats("", "Building the scene")
             with lowered(lambda: self._session(shot, texels)) as session:
                 self._tell(Messages.of_library(session.messages()))
-                self._render(session)
+                schedule = self._render(session)
                 write_picture(result.layers[0], asked.picture(session.read))
+                if kind in _LIT and not self._is_over():
+                    self._tell_error(session, schedule)
         finally:
             self._engine.end_result(result)
 
@@ -53,11 +63,19 @@ class Bake:
         camera = _camera(self._depsgraph, width, height)
         options = ExportOptions(passes=asked.passes, picture=camera)
         shot, messages = export_scene(self._depsgraph, options, self._is_over)
+        scene = self._depsgraph.scene
+        if shot.settings.integrator != Integrator.PATH:
+            raise LancerError(f"scene '{scene.name}': only the integrator Path bakes, choose it in the render properties")
+        if asked.kind == "COMBINED" and scene.lancer.use_denoising:
+            messages.add(f"scene '{scene.name}': a bake is not denoised", severity=Severity.HINT)
         # The roughness of the first surface alone.
         changes = {"film_transparent": True, "blended_features": True}
         if asked.bounces is not None:
             changes["max_bounces"] = asked.bounces
-        if asked.kind not in ("COMBINED", "DIFFUSE", "GLOSSY", "TRANSMISSION", "AO"):
+        if asked.kind in _LIT:
+            # Empty texels have no error, and lower the mean of squares over all.
+            changes["target_error"] = shot.settings.target_error * math.sqrt(self._shown)
+        else:
             changes |= {"target_error": 0.0, "samples": min(shot.settings.samples, _DATA_SAMPLES)}
         shot.set("settings", dataclasses.replace(shot.settings, **changes))
         self._tell(messages)
@@ -70,6 +88,8 @@ class Bake:
             rows = np.flatnonzero((table.name_indices == table.names.index(name)) & (table.kinds == InstanceKind.MESH))
             if len(rows):
                 return int(rows[0])
+        if self._thing.lancer.shape != "MESH":
+            raise LancerError(f"object '{name}' is shown as an exact shape: set its Shape to Mesh to bake it")
         raise LancerError(f"object '{name}' shows no mesh in the render: enable it for renders, and give it faces")
 
     def _session(self, shot, texels):
@@ -86,7 +106,17 @@ class Bake:
                     schedule.cancel()
                 self._engine.update_progress(schedule.fraction)
             if self._is_over():
-                return
+                break
+        return schedule
+
+    def _tell_error(self, session, schedule):
+        """Report the error of all light that the texels with a surface show, whatever part of it is baked."""
+        numbers = render_report.account(session, schedule)
+        for name in ("error", "error_low", "error_high", "error_cannot_exclude"):
+            numbers[name] /= math.sqrt(self._shown)
+        settings = session.settings.replaced(target_error=session.settings.target_error / math.sqrt(self._shown))
+        for line in render_report.lines(numbers, settings):
+            self._engine.report({"INFO"}, f"Lancer: bake of '{self._thing.original.name}': {line}")
 
 
 def _view(scene, kind):

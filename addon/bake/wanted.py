@@ -17,8 +17,7 @@ _DATA = {
     "AO": Pass.AMBIENT_OCCLUSION,
 }
 _COMPONENTS = ("DIFFUSE", "GLOSSY", "TRANSMISSION")
-# Types that need no light beyond the first surface.
-_SHALLOW = frozenset(_DATA)
+TYPES = frozenset({*_DATA, *_COMPONENTS, "COMBINED"})
 
 
 class Wanted(NamedTuple):
@@ -46,7 +45,7 @@ class Wanted(NamedTuple):
     @property
     def bounces(self):
         """The most scatterings after the first that count; None: as the scene says."""
-        return 0 if self.kind in _SHALLOW or not self.indirect else None
+        return 0 if self.kind in _DATA or not self.indirect else None
 
     def picture(self, read):
         """Return (height, width, 4) float32; read(source): as Session.read."""
@@ -75,6 +74,8 @@ class Wanted(NamedTuple):
 
 def wanted(kind, pass_filter):
     """Return the Wanted of a type of bake with Blender's bits of a pass filter, or None for a type that is not supported."""
+    if kind not in TYPES:
+        return None
     if kind in _DATA:
         return Wanted(kind)
     bits = {item.identifier: item.value for item in bpy.types.BakeSettings.bl_rna.properties["pass_filter"].enum_items}
@@ -85,8 +86,6 @@ def wanted(kind, pass_filter):
     light = {"direct": has("DIRECT"), "indirect": has("INDIRECT")}
     if kind in _COMPONENTS:
         return Wanted(kind, (kind,), **light, color=has("COLOR"))
-    if kind != "COMBINED":
-        return None
     components = tuple(name for name in _COMPONENTS if has(name))
     whole = has("DIRECT", "INDIRECT", "EMIT", *_COMPONENTS)
     return Wanted(kind, components, **light, color=True, emission=has("EMIT"), whole=whole)

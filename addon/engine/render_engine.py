@@ -59,6 +59,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
 
     # Blender calls __init__ twice and __del__ at odd times, so the class has neither: initial values are class attributes.
     _snapshot = None
+    _prepared = False  # the layer is exported, or has failed to be
     _picture = None
     _gave_up = False
     _metadata = None  # of mattes, by name
@@ -74,9 +75,12 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         passes.register_passes(self, scene, renderlayer)
 
     def update(self, data=None, depsgraph=None):
-        # A bake has no resolution, and exports by itself.
-        if self.is_preview or self.resolution_x == 0:
-            return
+        # A bake is no render job, and exports by itself.
+        if not self.is_preview and render_job.is_running():
+            self._prepare(depsgraph)
+
+    def _prepare(self, depsgraph):
+        self._prepared = True
         if render_export.is_wanted():
             render_export.take(self, depsgraph)
             return
@@ -88,6 +92,10 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         if self.is_preview:
             preview.render(self, depsgraph)
             return
+        if not self._prepared:
+            # Some script has removed the handlers that tell of render jobs.
+            self._prepare(depsgraph)
+        self._prepared = False
         if render_export.is_wanted():
             return
         with self._working():
@@ -114,7 +122,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         if self._picture is None:
             self._picture = Picture((scene.name, scene.frame_current_final), ())
             last_messages.pop(scene, None)
-        with self._working():
+        with render_job.baking():
             job = Bake(self, depsgraph, object, lambda messages: self._tell(scene, messages), self._is_over)
             self._guarded(scene, job.run, pass_type, pass_filter, width, height)
 

@@ -36,6 +36,14 @@ def working():
         _working = False
 
 
+@contextlib.contextmanager
+def baking():
+    """Context of the engine's work in a bake, which Blender tells by no handler."""
+    with working():
+        yield
+    _over.set()
+
+
 def is_running():
     return not _over.is_set()
 

@@ -61,18 +61,21 @@ class MotionReader:
         self._keys = middle.keys[places.entries]  # of the table's rows
         self._counts = np.zeros(len(table), np.int64)  # of keys, by row
         self._owners = {}  # the row of the first instance of each mesh that changes its shape
+        self._lamps = {}  # name by key
         self._instants = {}
-        self._find_movers()
+        self._find_movers(middle)
         self._camera_count = key_count(camera.original, camera.original, shutter)
 
-    def _find_movers(self):
+    def _find_movers(self, middle):
         row_of = {int(entry): row for row, entry in enumerate(self._places.entries)}
         known = {}
         for number, entry in enumerate(self._depsgraph.object_instances):
             row = row_of.get(number)
-            if row is None:
-                continue
             thing = entry.instance_object if entry.is_instance else entry.object
+            if row is None:
+                if thing.type == "LIGHT":
+                    self._lamps[middle.keys[number].tobytes()] = thing.name
+                continue
             owner = entry.parent if entry.is_instance else thing
             of = thing.original, owner.original
             if of not in known:
@@ -125,9 +128,22 @@ class MotionReader:
             # Where something else moves, so does the region of a camera that stands still.
             if all(camera == cameras[0] for camera in cameras):
                 cameras = ()
+        self._tell_lamps(messages)
         table = dataclasses.replace(snapshot.instances, motions=tuple(self._motions(messages)))
         meshes = self._meshes(snapshot.meshes, messages)
         return snapshot.replaced(meshes=meshes, instances=table, motion=as_motion(self._shutter, cameras))
+
+    def _tell_lamps(self, messages):
+        """Name the lamps that move, of which Cycles blurs none."""
+        moving = set()
+        keys = np.array([np.frombuffer(key, np.uint64) for key in self._lamps])
+        here = self._instants[0.0].columns[self._instants[0.0].rows_of(keys)] if self._lamps else ()
+        for instant in self._instants.values() if self._lamps else ():
+            entries = instant.rows_of(keys)
+            moves = (entries >= 0) & (instant.columns[entries] != here).any(axis=(1, 2))
+            moving |= {name for name, is_moving in zip(self._lamps.values(), moves, strict=True) if is_moving}
+        for name in sorted(moving):
+            messages.add(f"light '{name}': moves within the shutter, as in Cycles it shines from its place in the middle of it")
 
     def _motions(self, messages):
         for count in np.unique(self._counts).tolist():

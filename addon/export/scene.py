@@ -97,7 +97,9 @@ def export_scene(depsgraph, options=None, poll=None):
     images.limit = size_limit(scene, in_view)
     shaders = parts.shaders if parts is not None else options.shaders or ShaderCache(images)
     materials = Materials(messages, override, images, depsgraph, shaders)
-    divider = Divider(depsgraph, options.dicing if in_view else camera, messages, in_view)
+    # As in Cycles, a bake shows the meshes of Blender, whose triangles its texels name.
+    is_bake = options.picture is not None
+    divider = Divider(depsgraph, options.dicing if in_view else camera, messages, in_view, is_off=is_bake)
     aovs = rendered_aovs(view_layer, options.passes)
     materials.aovs = aovs
     instances = Instances(depsgraph, materials, messages, shaders, divider, linking, Culling(scene, camera), options)

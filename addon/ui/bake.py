@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..bake.wanted import TYPES
 from .panel import LancerPanel, setting
 
 _LIGHT = {"DIFFUSE", "GLOSSY", "TRANSMISSION"}
@@ -19,8 +20,13 @@ class LANCER_RENDER_PT_bake(LancerPanel, bpy.types.Panel):
     def draw(self, context):
         scene = context.scene
         own, kind = scene.render.bake, _type_of(scene)
-        self.layout.operator("object.bake", icon="RENDER_STILL").type = kind
+        row = self.layout.row()
+        # Where a bake fails, Blender leaves the image black.
+        row.enabled = kind in TYPES
+        row.operator("object.bake", icon="RENDER_STILL").type = kind
         column = self._column()
+        if kind not in TYPES:
+            column.label(text=f"Lancer does not bake {kind.title()}", icon="ERROR")
         setting(column, "bake_type", getattr(scene, "cycles", None))
         setting(column, "view_from", own)
         if kind == "NORMAL":

@@ -46,10 +46,28 @@ def test_every_target_is_reached(which, tmp_path):
 def test_what_cannot_be_baked_is_told(which, tmp_path):
     got = blenders.run(which, tmp_path, "bake_cases", "refused")
     assert "baking of type Shadow is not supported" in got["shadow"]
-    assert "object 'Block' shows no mesh" in got["exact"]
+    assert "object 'Block' is shown as an exact shape: set its Shape to Mesh" in got["exact"]
+    assert "scene 'Scene': only the integrator Path bakes" in got["classic"]
+
+
+@both
+def test_meshes_are_those_of_blender(which, tmp_path):
+    """As in Cycles, adaptive subdivision is of pictures: the triangles that Blender names are those of its own mesh."""
+    got = blenders.run(which, tmp_path, "bake_cases", "divided")
+    assert got["apart"] < 1e-5 < got["level"]
+
+
+@both
+def test_renders_need_no_handlers(which, tmp_path):
+    """They tell bakes and renders apart."""
+    got = blenders.run(which, tmp_path, "bake_cases", "unannounced")
+    assert got["level"] > 0.05
 
 
 @both
 def test_threads_and_targets(which, tmp_path):
     got = blenders.run(which, tmp_path, "bake_cases", "same")
-    assert got["same"] and got["few"] > 0.0
+    assert got["same"]
+    # Two renders at fixed samples are followed by one that its target ends.
+    told = [line for line in got["console"].splitlines() if "bake of 'Block': error" in line]
+    assert len(told) == 3 and told[2].endswith("ended by target error")

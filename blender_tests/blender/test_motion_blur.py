@@ -35,6 +35,8 @@ def test_keys_of_objects_and_meshes(which, tmp_path):
     assert got["camera"] == 0
     told = [line for line in got["lines"] if "vertices" in line]
     assert told == ["mesh 'Grows': the number of its vertices changes within the shutter, as in Cycles it is not blurred then"]
+    lamps = [line for line in got["lines"] if line.startswith("light")]
+    assert lamps == ["light 'Lantern': moves within the shutter, as in Cycles it shines from its place in the middle of it"]
     flat = [line for line in got["lines"] if "scale is 0" in line]
     assert flat == ["object 'Turns over': a scale is 0 within the shutter; its motion is not blurred"]
 

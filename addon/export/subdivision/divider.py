@@ -17,12 +17,14 @@ PLACES_OTHERWISE = bpy.app.version < (4, 5)
 
 
 class Divider:
-    def __init__(self, depsgraph, camera, messages, in_view=False):
+    def __init__(self, depsgraph, camera, messages, in_view=False, is_off=False):
         """camera: the snapshot.Camera of the picture, or of a window's view as it is now; None for a view without pixels.
+        is_off: no object is divided.
 
         The meshes of a window do not follow its view, as in Cycles: else each move of the view would divide them again.
         """
         self._depsgraph, self._own_camera, self._messages, self._in_view = depsgraph, camera, messages, in_view
+        self._is_off = is_off
         self._settings = {}  # by the address of the object
         chosen = getattr(getattr(depsgraph.scene, "cycles", None), "dicing_camera", None)
         self._chosen = chosen if chosen is not None and chosen.type == "CAMERA" else None
@@ -41,7 +43,7 @@ class Divider:
 
     def settings(self, owner):
         """Return the Adaptive of an evaluated object; None if its mesh is shown as Blender divides it."""
-        if not owner.modifiers:
+        if self._is_off or not owner.modifiers:
             return None
         key = owner.original.as_pointer()
         if key not in self._settings:

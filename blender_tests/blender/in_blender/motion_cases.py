@@ -140,6 +140,10 @@ def keys():
     turns_over = stage.cube(0.5, stage.shader(), location=(4, 2, 0))
     turns_over.name = "Turns over"
     _slide(turns_over, "scale", (-1.0, 1.0, 1.0), (1.0, 1.0, 1.0))
+    stage.light().name = "Still lamp"
+    lamp = stage.light(location=(1, 1, 3))
+    lamp.name = "Lantern"
+    _slide(lamp)
     scene.frame_set(2)
     with _Watch() as watch:
         bpy.ops.render.render()
