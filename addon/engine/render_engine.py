@@ -278,7 +278,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
                     # Each view has samples of its own.
                     self._resume = self._resume and resume.wanted(scene, f"{layer} {view.name}")
                 elif len(self._views) == 1:
-                    # Nothing else refers to the snapshot, which the upload empties.
+                    # Drop this reference: the upload empties the snapshot.
                     snapshot = None
                 self._render(scene, layer, wanted, denoising, machines, view.name)
                 if self._is_over():

@@ -89,7 +89,7 @@ class Resume:
 
     def finish(self):
         """Write the file once more at the end of the render; return Messages about files that could not be written."""
-        # Nothing has come since the file was read, or a part of the last step is missing.
+        # Write no file of a part of a step, and none again that is there.
         if self._session.is_whole and self._session.statistics().samples > 0:
             self._write()
         return Messages([self._failure] if self._failure else [], Severity.WASTE)

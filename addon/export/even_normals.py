@@ -27,7 +27,7 @@ def with_even_normals(meshes, table, geometries, materials, known):
     """
     numbers = np.unique(np.array(geometries, np.int64).reshape(-1), return_inverse=True)[1][table.name_indices]
     alone = (np.bincount(numbers)[numbers] == 1) & (table.kinds == _MESH) if len(numbers) else np.zeros(0, bool)
-    # What moves is never transformed beforehand.
+    # Leave out instances that move: Cycles transforms none of them beforehand.
     for motion in table.motions:
         alone[motion.instances] = False
     alone &= np.array([mesh.moved_positions is None for mesh in meshes] or [True])[np.where(alone, table.meshes, 0)]

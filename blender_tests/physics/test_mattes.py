@@ -54,7 +54,7 @@ def test_solid_objects_share_each_pixel_out():
         assert all(sum(pixel.values()) == 1.0 and list(pixel.values()) == sorted(pixel.values())[::-1] for pixel in objects)
         assert {key for pixel in objects for key in pixel} == {2, 3, 4}
         assert all(share * 16 == int(share * 16) for pixel in objects for share in pixel.values())
-        # Both balls are one asset, and all surfaces have one material.
+        # Mattes by asset and material: both balls are one asset, and all surfaces have one material.
         for of_objects, of_assets in zip(objects, sum(mattes(shown, PassKind.ASSET_MATTES), []), strict=True):
             assert of_assets.get(9, 0.0) == of_objects.get(3, 0.0) + of_objects.get(4, 0.0)
         assert all(pixel == {5: 1.0} for pixel in sum(mattes(shown, PassKind.MATERIAL_MATTES), []))

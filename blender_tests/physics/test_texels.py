@@ -21,7 +21,7 @@ def texels(size=SIZE, instance=0, view=BakeView.ABOVE):
     u, v = np.meshgrid(middle, middle)
     rows = np.zeros((size, size), DTYPE)
     lower = u >= v
-    # Of (0, 0), (1, 0), (1, 1): 1 - u, u - v, v; of (0, 0), (1, 1), (0, 1): 1 - v, u, v - u.
+    # Weights of (0, 0), (1, 0), (1, 1): 1 - u, u - v, v; of (0, 0), (1, 1), (0, 1): 1 - v, u, v - u.
     rows["triangle"] = np.where(lower, 0, 1)
     rows["weights"] = np.stack([np.where(lower, 1 - u, 1 - v), np.where(lower, u - v, u)], axis=-1)
     step = 1.0 / size

@@ -140,7 +140,7 @@ def written(engine):
     result["files"] = sorted(
         os.path.join(os.path.relpath(at, folder), name) for at, _, names in os.walk(folder) for name in names
     )
-    # Of one view layer alone.
+    # A patch of one view layer alone.
     flat_stage.patch(flat_stage.RED, 0, 0, collection=flat_stage.second_layer(scene))
     flat_stage.as_file(scene)
     render.filepath = os.path.join(folder, "layer.exr")

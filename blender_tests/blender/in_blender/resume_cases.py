@@ -81,7 +81,7 @@ def more_samples():
         bpy.ops.render.render()
         scene.lancer.samples = many
         result.append({"same": bool(np.array_equal(rendered(scene), whole)), "facts": facts(scene), "files": files()})
-    # Nothing is left to render.
+    # Render once more, where nothing is left to do.
     result.append({"same": bool(np.array_equal(rendered(scene), whole)), "facts": facts(scene), "files": files()})
     panel = [panel_of(scene)]
     clear()

@@ -136,7 +136,7 @@ MovingBox moving_box(const PlacementFrame &frame, std::span<const Extent> extent
   MovingBox box;
   for (int end = 0; end < 2; ++end) {
     box.at[end] = make_box(frame, {ends[end].lo - below, ends[end].hi + above});
-    // Of lo + time * (hi - lo), the difference, the product and the sum are rounded, on numbers of at most 2, 2 and 1.
+    // Rounding in lo + time * (hi - lo): of the difference, the product and the sum, on numbers of at most 2, 2 and 1.
     const Float4 rounding{kMovingPad, kMovingPad, kMovingPad, 0.0f};
     box.at[end].lo -= rounding;
     box.at[end].hi += rounding;

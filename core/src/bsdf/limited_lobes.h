@@ -7,11 +7,11 @@
 
 namespace lancer {
 
-// What the limits ask in each lane.
+// The requests of the limits, by lane.
 template <class F> struct LobeLimits {
   bool caustics = false, blurs = false; // whether some lane may lack caustics, or has a least alpha
   MaskOf<F> no_reflections = uniform<F>(false), no_refractions = uniform<F>(false); // lobes that mirror, or refract, are absent
-  // Of these lanes only what other lanes lack is left.
+  // Lanes that keep the lobes that other lanes lack, and only these.
   bool lacks_reflections = false, lacks_refractions = false;
   MaskOf<F> only_caustics = uniform<F>(false);
   F least_alpha{0.0f}; // of facets; 0: none

@@ -1,4 +1,4 @@
-// What samples give beside their SampleResults, as much as the settings ask for: channels of light groups and of outputs, and
+// Results of samples beside their SampleResults, as many as the settings ask for: channels of light groups and of outputs, and
 // mattes.
 #pragma once
 

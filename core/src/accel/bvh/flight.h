@@ -59,8 +59,8 @@ struct alignas(64) Flight {
   uint32_t unbounded; // number of unbounded instances still to test
   uint32_t number;    // of the ray in its batch
   bool usable;        // whether the ray can hit the instance
-  // Of queries in which something moves: whether the current tree has moving nodes; of the current mesh, the bytes from a block
-  // to that of the next key, and the share of the way to it.
+  // State of queries in which something moves: whether the current tree has moving nodes; for the current mesh, the bytes from
+  // a block to that of the next key, and the share of the way to it.
   bool tree_moves;
   size_t key_step;
   float key_share, time;

@@ -212,12 +212,12 @@ void ClassicIntegrator::light_block() {
 
 // Queues the light of a lane with its shadow ray.
 void ClassicIntegrator::send_shadow(uint32_t number, uint32_t lane, const glm::vec3 &light) {
-  const WaitingLight waiting{.target = number_[lane]};
-  const glm::vec3 contribution = branch_of(lane).weight * light;
+  Ray &ray = shadows_.push(branch_of(lane).weight * light, 0, scene_.lights.links(number),
+                           [&](WaitingLight &waiting) { waiting.target = number_[lane]; });
   if (scene_.lights.no_shadow(number))
-    return shadows_.push_lit(waiting, contribution);
-  write_shadow_ray(scene_, surfaces_, lane, light_.samples(), lit_block_,
-                   shadows_.push(waiting, contribution, 0, scene_.lights.links(number)));
+    ShadowStage::leave_out(ray);
+  else
+    write_shadow_ray(scene_, surfaces_, lane, light_.samples(), lit_block_, ray);
 }
 
 // Moves all lanes to a corner of their triangles, as if the rays had hit it.

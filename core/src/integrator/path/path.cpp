@@ -334,15 +334,17 @@ LightPath<float> PathIntegrator::asking_path(uint32_t lane) const {
 // Queues a lane's light sample with its shadow ray.
 void PathIntegrator::send_shadow(uint32_t lane) {
   const Path &path = path_of(lane);
-  WaitingLight waiting = film_.waiting(path, light_.lit().share, lane, light_.chosen(lane));
-  waiting.parts = float(lights_[lane]) * float(path.sharers);
-  const glm::vec3 contribution = get(light_.lit().contribution, lane);
-  // A limit of a lamp leaves its light samples out.
-  if (scene_.lights.is_spent(light_.chosen(lane), path.scatterings))
-    waiting.ghost = Ghost::Bounces;
-  if (scene_.lights.no_shadow(light_.chosen(lane)))
-    return shadow_.push_lit(waiting, contribution);
-  Ray &ray = shadow_.push(waiting, contribution, path.passed_through, scene_.lights.links(light_.chosen(lane)));
+  const uint32_t chosen = light_.chosen(lane);
+  const auto fill = [&](WaitingLight &waiting) {
+    film_.fill(waiting, path, light_.lit().share, lane, chosen);
+    waiting.parts = float(lights_[lane]) * float(path.sharers);
+    // A limit of a lamp leaves its light samples out.
+    if (scene_.lights.is_spent(chosen, path.scatterings))
+      waiting.ghost = Ghost::Bounces;
+  };
+  Ray &ray = shadow_.push(get(light_.lit().contribution, lane), path.passed_through, scene_.lights.links(chosen), fill);
+  if (scene_.lights.no_shadow(chosen))
+    return ShadowStage::leave_out(ray);
   if (shadow_.asks_light_path())
     shadow_.set_light_path(asking_path(lane));
   write_shadow_ray(scene_, surface_, lane, light_.samples(), light_.lit(), ray);

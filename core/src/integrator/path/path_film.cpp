@@ -256,8 +256,7 @@ bool PathFilm::miss(const Path &path) {
   return (settings_.passes & bit(Pass::Environment)) != 0;
 }
 
-WaitingLight PathFilm::waiting(const Path &path, const Floats (&share)[2][3], uint32_t lane, uint32_t chosen) const {
-  WaitingLight light;
+void PathFilm::fill(WaitingLight &light, const Path &path, const Floats (&share)[2][3], uint32_t lane, uint32_t chosen) const {
   light.target = path.sample;
   light.group = layout_.groups > 0 ? scene_.lights.group_of(scene_.geometry, chosen) : 0;
   light.sum = sum_of(path);
@@ -265,7 +264,6 @@ WaitingLight PathFilm::waiting(const Path &path, const Floats (&share)[2][3], ui
   light.ghost = path.ghost;
   for (int component = 0; component < 2 && passes.components(); ++component)
     light.share[component] = path.in_view ? get(share[component], lane) : shares_[sum(path)].of[component];
-  return light;
 }
 
 WaitingLight PathFilm::waiting(const Path &path, uint32_t group) const {

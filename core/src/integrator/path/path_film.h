@@ -47,9 +47,9 @@ public:
   // light, and after a second scattering as indirect. environment: the light is the world's, which a transparent film hides.
   // group: of the light, 0 = none.
   void add(const Path &path, const glm::vec3 &radiance, bool environment, uint32_t group);
-  // Returns the record of a lane's light sample that waits for its shadow ray. share: LitBlock::share; chosen: the light.
-  WaitingLight waiting(const Path &path, const Floats (&share)[2][3], uint32_t lane, uint32_t chosen) const;
-  // Returns that of light on the way of a path's ray. group: of the light.
+  // Fills the record of a lane's light sample that waits for its shadow ray. share: LitBlock::share; chosen: the light.
+  void fill(WaitingLight &light, const Path &path, const Floats (&share)[2][3], uint32_t lane, uint32_t chosen) const;
+  // Returns the record of light on the way of a path's ray. group: of the light.
   WaitingLight waiting(const Path &path, uint32_t group) const;
   // Adds the part of a light sample's contribution that its shadow ray transmits.
   void add_lit(const WaitingLight &waiting, const glm::vec3 &light);

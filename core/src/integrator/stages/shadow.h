@@ -39,10 +39,14 @@ public:
     rays_.push_back(ray);
     waiting_.push_back({waiting, contribution, passed, links});
   }
-  // Queues a contribution and returns its ray for the caller to write in place: a copy would stall on the pending stores of its
-  // members.
-  Ray &push(const WaitingLight &waiting, const glm::vec3 &contribution, uint32_t passed = 0, const LightLinks &links = {}) {
-    waiting_.push_back({waiting, contribution, passed, links});
+  // Queues a contribution, calls fill(waiting) and returns the ray, for the caller to write both in place: a copy would stall
+  // on the pending stores of their members.
+  template <class Fill> Ray &push(const glm::vec3 &contribution, uint32_t passed, const LightLinks &links, Fill &&fill) {
+    Waiting &waiting = waiting_.emplace_back();
+    waiting.contribution = contribution;
+    waiting.passed = passed;
+    waiting.links = links;
+    fill(waiting.light);
     return rays_.emplace_back();
   }
 
@@ -54,12 +58,8 @@ public:
     light_paths_.back().kinds = RayKind::Shadow;
   }
 
-  // Queues light that nothing occludes.
-  void push_lit(const WaitingLight &waiting, const glm::vec3 &contribution) {
-    Ray ray;
-    ray.tmax = ray.tmin;
-    push(ray, waiting, contribution);
-  }
+  // Empties the ray of light that nothing occludes.
+  static void leave_out(Ray &ray) { ray.tmax = ray.tmin; }
 
   // Traces all rays, calls arrive(waiting, contribution times transmittance) in the order of pushing where light arrives, and
   // empties the queue. Returns the number of rays, also of those that nothing occludes.
