@@ -7,7 +7,7 @@ import numpy as np
 
 from ..bindings import snapshot
 from ..bindings.abi import LancerError
-from ..bindings.enums import BakeView, InstanceKind, Integrator
+from ..bindings.enums import BakeView, Catchers, InstanceFlag, InstanceKind, Integrator
 from ..bindings.session import Scene, Session
 from ..bindings.texels import EMPTY, Texels
 from ..export.camera import camera_fields
@@ -22,7 +22,7 @@ from .pixels import read_texels, write_picture
 from .wanted import wanted
 
 _STEP = 0.05  # seconds between polls
-_LIT = frozenset({"COMBINED", "AO", "DIFFUSE", "GLOSSY", "TRANSMISSION"})
+_LIT = frozenset({"COMBINED", "AO", "DIFFUSE", "GLOSSY", "TRANSMISSION", "SHADOW"})
 # Samples of passes without light: a texel's mean over its own area.
 _DATA_SAMPLES = 64
 
@@ -48,7 +48,13 @@ class Bake:
             if self._shown == 0.0:
                 return
             shot = self._export(asked, width, height)
-            texels = Texels(rows, self._instance(shot.instances), _view(self._depsgraph.scene, kind))
+            baked = self._instance(shot.instances)
+            if kind == "SHADOW":
+                # As in Cycles, the baked object is one more shadow catcher.
+                flags = shot.instances.flags.copy()
+                flags[baked] |= np.uint32(InstanceFlag.CATCHER)
+                shot.set("instances", shot.instances.replaced(flags=flags))
+            texels = Texels(rows, baked, _view(self._depsgraph.scene, kind))
             self._engine.update_stats("", "Building the scene")
             with lowered(lambda: self._session(shot, texels)) as session:
                 self._tell(Messages.of_library(session.messages()))
@@ -70,6 +76,7 @@ class Bake:
             messages.add(f"scene '{scene.name}': a bake is not denoised", severity=Severity.HINT)
         # The roughness of the first surface alone.
         changes = {"film_transparent": True, "blended_features": True}
+        changes["catchers"] = Catchers.APART if asked.kind == "SHADOW" else Catchers.OBJECTS
         if asked.bounces is not None:
             changes["max_bounces"] = asked.bounces
         if asked.kind in _LIT:

@@ -6,6 +6,7 @@ import bpy
 import numpy as np
 
 from ..bindings.enums import Pass
+from ..export.catchers import SOURCE
 
 _DATA = {
     "POSITION": Pass.POSITION,
@@ -17,7 +18,7 @@ _DATA = {
     "AO": Pass.AMBIENT_OCCLUSION,
 }
 _COMPONENTS = ("DIFFUSE", "GLOSSY", "TRANSMISSION")
-TYPES = frozenset({*_DATA, *_COMPONENTS, "COMBINED"})
+TYPES = frozenset({*_DATA, *_COMPONENTS, "COMBINED", "SHADOW"})
 
 
 class Wanted(NamedTuple):
@@ -38,6 +39,8 @@ class Wanted(NamedTuple):
             return (_DATA[self.kind],)
         if self.whole:
             return (Pass.COMBINED,)
+        if self.kind == "SHADOW":
+            return (SOURCE,)
         parts = [name for name, is_on in (("DIRECT", self.direct), ("INDIRECT", self.indirect), ("COLOR", self.color)) if is_on]
         found = tuple(Pass[f"{component}_{part}"] for component in self.components for part in parts)
         return (Pass.COMBINED, *found, *((Pass.EMISSION,) if self.emission else ()))
@@ -45,17 +48,20 @@ class Wanted(NamedTuple):
     @property
     def bounces(self):
         """The most scatterings after the first that count; None: as the scene says."""
-        return 0 if self.kind in _DATA or not self.indirect else None
+        return 0 if self.kind in _DATA or not (self.indirect or self.kind == "SHADOW") else None
 
     def picture(self, read):
         """Return (height, width, 4) float32; read(source): as Session.read."""
         if self.whole:
             return read(Pass.COMBINED)
         rgb = self._sum(read)
-        alpha = np.ones((*rgb.shape[:2], 1), np.float32) if self.kind in _DATA else read(Pass.COMBINED)[..., 3:]
+        is_solid = self.kind in _DATA or self.kind == "SHADOW"
+        alpha = np.ones((*rgb.shape[:2], 1), np.float32) if is_solid else read(Pass.COMBINED)[..., 3:]
         return np.concatenate([rgb, alpha], axis=2)
 
     def _sum(self, read):
+        if self.kind == "SHADOW":
+            return read(SOURCE)
         if self.kind in _DATA:
             values = read(_DATA[self.kind])
             return np.broadcast_to(values, (*values.shape[:2], 3)) if values.shape[2] == 1 else values[..., :3]
@@ -76,7 +82,7 @@ def wanted(kind, pass_filter):
     """Return the Wanted of a type of bake with Blender's bits of a pass filter, or None for a type that is not supported."""
     if kind not in TYPES:
         return None
-    if kind in _DATA:
+    if kind in _DATA or kind == "SHADOW":
         return Wanted(kind)
     bits = {item.identifier: item.value for item in bpy.types.BakeSettings.bl_rna.properties["pass_filter"].enum_items}
 

@@ -78,6 +78,7 @@ _CALLS = {
         *(_u32, _u32, _Array, _Array, _Array, _Array, _Array),
         *(c_double, _u32, c_double, _u32, _Array, _Array, POINTER(DenoisedError)),
     ),
+    "lancer_compose_catchers": (_u64, _Array, _Array, _Array, _Array),
     "lancer_scene_set_digest": (_u64, c_char_p),
     "lancer_session_create_joiner": (c_char_p, POINTER(Camera), POINTER(Settings), POINTER(_u64)),
     "lancer_session_tiles": (_u64, _u32, _Array, POINTER(_u32)),

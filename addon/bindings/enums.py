@@ -105,7 +105,10 @@ class Ray(IntFlag):
 
 
 class InstanceFlag(IntFlag):
+    """A shadow catcher is an object that stands for one in footage."""
+
     HOLDOUT = 1
+    CATCHER = 2
 
 
 class TexelKind(IntEnum):
@@ -630,10 +633,20 @@ class PassKind(IntEnum):
     AOV_VALUE = 6
     SAMPLES = 7
     RENDER_TIME = 8
+    SHADOW_CATCHER = 9
+    CATCHER_MATTE = 10
 
     @property
     def channels(self):
-        return (0, 4, 4, 4, 3, 4, 1, 1, 1)[self]
+        return (0, 4, 4, 4, 3, 4, 1, 1, 1, 3, 4)[self]
+
+
+class Catchers(IntEnum):
+    """Shadow catchers in the picture."""
+
+    OBJECTS = 0
+    APART = 1
+    SHADOWS = 2
 
 
 class BakeView(IntEnum):

@@ -283,6 +283,7 @@ class Light(Parameters, struct=structs.Light):
     specular_color: tuple = (1.0, 1.0, 1.0)
     hidden_from: int = Ray.CAMERA  # bits; by default lamps are invisible to the camera
     no_shadow: bool = False
+    no_catchers: bool = False
     light_group: int = 0  # 1 is the first; 0 = none
     lit_surfaces: int = 0  # 0: all
     unlit_sets: Sets = 0

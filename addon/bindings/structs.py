@@ -256,6 +256,7 @@ class Light(Structure):
         ("diffuse_color", c_float * 3),
         ("specular_color", c_float * 3),
         ("lit_surfaces", c_uint32),
+        ("no_catchers", c_uint32),
         ("unlit_sets", c_uint64),
         ("clear_sets", c_uint64),
     ]
@@ -365,6 +366,7 @@ class Settings(Structure):
         ("light_groups", c_uint32),
         ("aov_colors", c_uint32),
         ("aov_values", c_uint32),
+        ("catchers", c_uint32),
         ("threads", c_uint32),
         ("tile_size", c_uint32),
         ("refines", c_uint32),
@@ -488,6 +490,7 @@ class Part(Structure):
         ("tiles", c_uint32),
         ("first", c_uint32),
         ("end", c_uint32),
+        ("reserved", c_uint32),
     ]
 
 
@@ -721,6 +724,7 @@ SETTINGS = {
     "light_groups": ("number", 0),
     "aov_colors": ("number", 0),
     "aov_values": ("number", 0),
+    "catchers": ("choice", 0),
     "threads": ("number", 0),
     "tile_size": ("number", 0),
     "refines": ("switch", False),

@@ -44,6 +44,7 @@ class Denoised:
     version: str
     combined: Combined | None = None  # with the error; None without noise
     pair: tuple = ()  # the arguments of combine(), from which other figures can be computed
+    catcher: np.ndarray | None = None  # the pass SHADOW_CATCHER, (height, width, 3)
 
 
 def denoise(

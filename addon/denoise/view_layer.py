@@ -7,10 +7,11 @@ import time
 
 import numpy as np
 
+from ..bindings import shadowed
 from ..bindings.abi import LancerError
-from ..bindings.enums import Pass
+from ..bindings.enums import Catchers, Pass
 from ..bindings.session import Cancelled
-from . import denoiser, oidn
+from . import denoiser, oidn, shadows
 from .plan import FASTEST, plan
 
 DECLARATION = "denoised: a guess that can remove details; its own error is told beside that of the picture before denoising"
@@ -84,7 +85,7 @@ def apply(session, combines=True, poll=None, tell=None):
             tell(f"Denoising {fraction:.0%}")
 
     try:
-        denoised = denoiser.denoise(**inputs(session), combines=combines, poll=poll, tell=working)
+        denoised = _denoised(session, combines, {"poll": poll, "tell": working})
         return dataclasses.replace(denoised, seconds=time.monotonic() - started), ""
     except Cancelled:
         return None, ""
@@ -94,8 +95,20 @@ def apply(session, combines=True, poll=None, tell=None):
         return None, f"{error}; {AS_IT_IS}"
 
 
+def _denoised(session, combines, work):
+    """Return the Denoised of a session's picture, and of its pass of shadow catchers. work: arguments of denoiser.denoise."""
+    given = inputs(session)
+    if session.settings.catchers == Catchers.OBJECTS:
+        return denoiser.denoise(**given, combines=combines, **work)
+    # The noise of the samples is that of the picture with its shadow catchers.
+    del given["noise"], given["color"]
+    return shadows.denoise_parts(shadowed.parts_of(session), **given, **work)
+
+
 def error_of(session):
     """Return (error, upper end of its interval) of a session's picture after fast denoising; None if it cannot be known."""
+    if session.settings.catchers != Catchers.OBJECTS:
+        return None
     try:
         combined = denoiser.denoise(**{**inputs(session), "plan": FASTEST}).combined
     except LancerError:

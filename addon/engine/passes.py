@@ -9,6 +9,7 @@ from ..bindings.enums import Pass, PassKind
 from ..bindings.numbered_pass import NumberedPass
 from ..bindings.pass_names import CRYPTOMATTE_CHANNELS, CRYPTOMATTES, NAMES
 from ..denoise import view_layer as denoise
+from ..export import catchers
 from ..export.light_groups import light_groups_of
 from ..export.outputs import aovs_of
 
@@ -49,6 +50,7 @@ _CRYPTOMATTES = (
     ("asset", PassKind.ASSET_MATTES),
 )
 _SAMPLE_COUNT, _RENDER_TIME = NumberedPass(PassKind.SAMPLES), NumberedPass(PassKind.RENDER_TIME)
+_SHADOW_CATCHER = "Shadow Catcher"
 _DENOISED_ERROR = "Lancer Denoised Error"
 _LONG_NAMES = bpy.app.version >= (5, 0)
 _ALL_GUIDES = bpy.app.version >= (5, 2)
@@ -75,6 +77,8 @@ def render_passes(scene, view_layer):
         yield RenderPass("Debug Sample Count", "X", "VALUE", _SAMPLE_COUNT)
     if getattr(cycles, "pass_render_time", False):
         yield RenderPass("Render Time", "X", "VALUE", _RENDER_TIME)
+    if catchers.has_pass(view_layer):
+        yield RenderPass(_SHADOW_CATCHER, "RGB", "COLOR", catchers.SOURCE)
     # Each pass has two levels.
     levels = range((min(16, view_layer.pass_cryptomatte_depth) + 1) // 2)
     for switch, kind in _CRYPTOMATTES:
@@ -125,10 +129,12 @@ def fill(layer, read, wanted):
 
 
 def show_denoised(layer, denoised):
-    """Replace Combined, of all views with stereoscopy, by the image of a Denoised, and fill the pass of its error."""
+    """Replace Combined, of all views with stereoscopy, and Shadow Catcher by a Denoised; fill the pass of its error."""
     for target in layer.passes:
         if target.name == "Combined":
             _upload(target, denoised.image)
+        elif target.name == _SHADOW_CATCHER and denoised.catcher is not None:
+            _upload(target, np.ascontiguousarray(denoised.catcher))
         elif target.name == _DENOISED_ERROR and denoised.combined is not None:
             _upload(target, np.ascontiguousarray(denoised.combined.bars[..., None]))
 

@@ -108,11 +108,14 @@ _SCENE = {
 
 _LAYER = {
     **_followed("switches denoising off for a layer", "use_denoising"),
-    **_followed("asks for passes", "denoising_store_passes", "pass_debug_sample_count", "pass_render_time"),
+    **_followed(
+        "asks for passes",
+        "denoising_store_passes", "pass_debug_sample_count", "pass_render_time", "use_pass_shadow_catcher",
+    ),
     **_told(
         "these passes stay empty",
         "use_pass_volume_direct", "use_pass_volume_indirect", "use_pass_volume_scatter", "use_pass_volume_transmit",
-        "use_pass_volume_majorant", "use_pass_shadow_catcher",
+        "use_pass_volume_majorant",
     ),
     **_told(
         "Lancer's passes for denoising are those of Cycles' defaults",

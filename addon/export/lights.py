@@ -11,6 +11,7 @@ from ..bindings.enums import AreaShape, Falloff, LightKind, Ray
 from ..bindings.parameters import only_read
 from ..bindings.shading import NodeRef
 from ..messages.severity import Severity
+from .catchers import is_catcher
 from .graph import NodeGraph
 from .images import NoPictures
 from .lamp_transforms import area_of, axes_of, cone_stretch, describe_shear, is_flattened, shines_all_around
@@ -108,6 +109,7 @@ def export_light(thing, matrix_world, messages, depsgraph=None, hidden=None, shi
         spread=messages.number(getattr(light, "spread", math.pi), who, "spread", math.pi, 0.0, math.pi),
         hidden_from=(object_hidden_from(thing) if hidden is None else hidden) & ~int(Ray.SHADOW),
         no_shadow=not _casts_shadow(light),
+        no_catchers=not is_catcher(thing),
         lit_surfaces=lit_surfaces(light),
         falloff=Falloff[own.falloff],
         falloff_radius=messages.number(own.radius, who, "falloff radius", 10.0, 1e-12),

@@ -8,6 +8,7 @@ import numpy as np
 from ..bindings.enums import InstanceFlag, InstanceKind, Ray, Shading
 from ..messages.severity import Severity
 from .attributes import POLYGONS
+from .catchers import is_catcher
 from .light_groups import group_numbers
 from .light_linking import Links
 from .mesh import export_mesh, read_positions, shown_mesh
@@ -82,22 +83,24 @@ class Objects:
         """Return (Ray bits that do not see the object, InstanceFlag bits). narrowed: narrowed_by() of an instancer, or None."""
         hidden = object_hidden_from(thing)
         if narrowed is None:
-            holdout, indirect = self._is_holdout(thing), self._is_indirect(thing)
+            holdout, indirect, catcher = self._is_holdout(thing), self._is_indirect(thing), is_catcher(thing)
         else:
             # As in Cycles, an original that is a holdout or indirect only leaves its instances as they are.
             hidden |= narrowed[0]
             holdout, indirect = narrowed[1:3]
+            catcher = is_catcher(thing) or narrowed[4]
         if indirect and not holdout:
             hidden |= int(Ray.CAMERA)
-        return hidden, int(InstanceFlag.HOLDOUT) if holdout else 0
+        return hidden, int(InstanceFlag.HOLDOUT) * holdout | int(InstanceFlag.CATCHER) * catcher
 
     def narrowed_by(self, instancer):
-        """Return an instancer's effect on its instances: (hidden Ray bits, holdout, indirect only, its address).
+        """Return an instancer's effect on its instances: (hidden Ray bits, holdout, indirect only, its address, catcher).
 
         The address is None where it is not needed.
         """
         key = instancer.original.as_pointer() if self._linking.has(instancer) else None
-        return object_hidden_from(instancer), self._is_holdout(instancer), self._is_indirect(instancer), key
+        hidden, holdout, indirect = object_hidden_from(instancer), self._is_holdout(instancer), self._is_indirect(instancer)
+        return hidden, holdout, indirect, key, is_catcher(instancer)
 
     def _is_holdout(self, thing):
         if _HAS_HOLDOUT and (thing.is_holdout or thing.original.is_holdout):

@@ -8,6 +8,7 @@ from ..bindings.session import Cancelled
 from ..bindings.snapshot import SceneSnapshot
 from ..messages.messages import Messages
 from .camera import export_camera
+from .catchers import catchers_of
 from .culling import Culling
 from .even_normals import with_even_normals
 from .flat import report_flat
@@ -78,6 +79,10 @@ def export_scene(depsgraph, options=None, poll=None):
     override = view_layer.material_override and view_layer.material_override.evaluated_get(depsgraph)
     in_view = options.view is not None
     settings = export_settings(depsgraph, options.passes, world, messages, in_view)
+
+    def with_catchers(snapshot):
+        return settings.replaced(catchers=catchers_of(snapshot.instances, view_layer, settings.integrator))
+
     check_scene(scene, messages)
     check_passes(scene, options.passes, messages)
     check_view_layer(scene, view_layer, messages)
@@ -90,7 +95,7 @@ def export_scene(depsgraph, options=None, poll=None):
         if again is not None:
             # The messages of the last export include those of the checks above, which have not changed.
             snapshot, messages, geometries = again
-            return _placed(snapshot, geometries, messages, options, camera, settings), messages
+            return _placed(snapshot, geometries, messages, options, camera, with_catchers(snapshot)), messages
     images = parts.images if parts is not None else options.shaders.images if options.shaders else Images(obey, options.kept)
     images.obey = obey
     images.frame, images.is_preview, images.texture_cache = scene.frame_current, options.is_preview, cache
@@ -126,7 +131,7 @@ def export_scene(depsgraph, options=None, poll=None):
         # The instance of a lamp moves with its instancer; the places of object and camera decide how a mesh is divided.
         moves_freely = not (instances.has_lamp_instances or divider.depends_on_places or instances.culls)
         parts.end(snapshot, messages, instances.places if moves_freely else None, instances.geometries, state)
-    return _placed(snapshot, instances.geometries, messages, options, camera, settings), messages
+    return _placed(snapshot, instances.geometries, messages, options, camera, with_catchers(snapshot)), messages
 
 
 def _grouped(world, sky, groups):

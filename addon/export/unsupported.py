@@ -5,6 +5,7 @@ import bpy
 from ..bindings.enums import Pass, PassKind
 from ..bindings.numbered_pass import NumberedPass
 from ..messages.severity import Severity
+from .catchers import is_catcher
 from .cycles_settings import check_cycles
 from .light_groups import MOST
 from .visibility import object_hidden_from, sees_light_apart
@@ -15,6 +16,7 @@ _PASSES_HERE = {f"{component}_{part}" for component in _COMPONENTS for part in (
     "combined", "z", "mist", "position", "normal", "uv", "object_index", "material_index", "emit", "environment",
     "ambient_occlusion",
 }  # fmt: skip
+_PASSES_HERE.add("shadow_catcher")
 _PASSES_HERE |= {f"cryptomatte_{kind}" for kind in ("object", "material", "asset")}
 # A switch without an image of its own, and a pass that Blender itself draws.
 _NO_PASSES = {"cryptomatte_accurate", "grease_pencil"}
@@ -29,7 +31,6 @@ EMPTY_PASSES = {
 }
 # Find out once which properties this Blender has: a failing getattr per object takes as long as all other checks.
 _OF_OBJECTS = bpy.types.Object.bl_rna.properties
-_HAS_CATCHER = "is_shadow_catcher" in _OF_OBJECTS
 _HAS_OFFSET = "shadow_terminator_shading_offset" in _OF_OBJECTS
 
 
@@ -88,11 +89,8 @@ def _missing_passes(view_layer):
 
 
 def check_object(thing, scene, messages):
-    if _HAS_CATCHER and thing.is_shadow_catcher:
-        messages.add(
-            f"object '{thing.name}': shadow catchers are not supported, it is rendered as any other object",
-            "feature:shadow catcher",
-        )
+    if is_catcher(thing) and scene.lancer.integrator != "PATH":
+        messages.add(f"object '{thing.name}': shadow catchers need Path Tracing, it is rendered as any other object")
     if sees_light_apart(object_hidden_from(thing)):
         messages.add(
             f"object '{thing.name}': shadow rays see it and paths do not, or the reverse: light behind it depends on the "

@@ -244,6 +244,10 @@ _KINDS = (
         _objects_where(lambda snapshot: (snapshot.instances.flags & InstanceFlag.HOLDOUT) != 0),
     ),
     _Kind(
+        "shadow-catchers", "{n} object catches shadows", "{n} objects catch shadows",
+        _objects_where(lambda snapshot: (snapshot.instances.flags & InstanceFlag.CATCHER) != 0),
+    ),
+    _Kind(
         "visibility", "{n} object is hidden from some rays", "{n} objects are hidden from some rays",
         _objects_where(lambda snapshot: snapshot.instances.hidden_from != 0),
     ),

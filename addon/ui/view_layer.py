@@ -69,6 +69,7 @@ class LANCER_VIEWLAYER_PT_passes_light(LancerViewLayerPanel, bpy.types.Panel):
         switch("emit", Pass.EMISSION, "Emission")
         switch("environment", Pass.ENVIRONMENT, "Environment")
         switch("ambient_occlusion", Pass.AMBIENT_OCCLUSION, "Ambient Occlusion")
+        setting(column, "use_pass_shadow_catcher", getattr(layer, "cycles", None), text="Shadow Catcher")
 
 
 class LANCER_VIEWLAYER_PT_passes_cryptomatte(LancerViewLayerPanel, bpy.types.Panel):

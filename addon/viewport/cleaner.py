@@ -2,9 +2,10 @@
 
 import threading
 
-from ..bindings.enums import Pass
+from ..bindings import shadowed
+from ..bindings.enums import Catchers, Pass
 from ..bindings.session import Cancelled
-from ..denoise import denoiser
+from ..denoise import denoiser, shadows
 from ..denoise.plan import plan
 
 # Passes of the session that denoising needs besides Combined.
@@ -32,8 +33,12 @@ class Cleaner:
 
     def give(self, what, samples):
         """Denoise the session's current picture, with that many samples; what: comes back with the result."""
-        color, *guides = [self._session.read(source) for source in (Pass.COMBINED, *GUIDES)]
-        arguments = color, guides, plan(color.shape[0] * color.shape[1], samples)
+        guides = [self._session.read(source) for source in GUIDES]
+        if self._session.settings.catchers != Catchers.OBJECTS:
+            clean, picture = shadows.denoise_parts, shadowed.parts_of(self._session)
+        else:
+            clean, picture = denoiser.denoise, self._session.read(Pass.COMBINED)
+        arguments = clean, picture, guides, plan(guides[0].shape[0] * guides[0].shape[1], samples)
         self._what = what
         self._thread = threading.Thread(target=self._work, args=arguments, name="lancer viewport denoising", daemon=True)
         self._thread.start()
@@ -48,10 +53,10 @@ class Cleaner:
             raise error
         return self._what, self._image
 
-    def _work(self, color, guides, how):
+    def _work(self, clean, picture, guides, how):
         threads = self._session.settings.threads
         try:
-            self._image = denoiser.denoise(color, *guides, plan=how, threads=threads, poll=self._given_up.is_set).image
+            self._image = clean(picture, *guides, plan=how, threads=threads, poll=self._given_up.is_set).image
         except Cancelled:
             pass
         except Exception as error:

@@ -11,6 +11,7 @@ from ..bindings import snapshot
 from ..bindings.abi import LancerError
 from ..bindings.enums import Pass
 from ..denoise import view_layer as denoise
+from ..export.catchers import catchers_of
 from ..export.parts import Parts
 from ..export.scene import ExportOptions, export_scene
 from ..export.settings import export_settings, world_of
@@ -151,7 +152,12 @@ class Viewport:
         settings = export_settings(depsgraph, (Pass.COMBINED,), world_of(depsgraph), Messages(), in_view=True)
         self._set_contents(self._contents, settings)
         settings = settings.replaced(
-            samples=own.preview_samples or _MANY, target_error=0.0, time_limit=0.0, split_lights=1, split_paths=1
+            catchers=catchers_of(self._contents.instances, depsgraph.view_layer, settings.integrator),
+            samples=own.preview_samples or _MANY,
+            target_error=0.0,
+            time_limit=0.0,
+            split_lights=1,
+            split_paths=1,
         )
         finest = max(1, engine.get_preview_pixel_size(depsgraph.scene))
         denoising = own.use_preview_denoising and own.integrator != "NORMALS"

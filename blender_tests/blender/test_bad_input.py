@@ -36,7 +36,7 @@ UNSUPPORTED = [
     ["object 'Cube'", "hair", "'Fluff'"],
     ["view layer", "Vector"],
     ["view layer", "Freestyle"],
-    ["object 'Cube'", "shadow catcher"],
+    ["object 'Cube'", "shadow caustics"],
 ]
 DARK = {"empty_scene", "no_world_no_light"}
 

@@ -45,7 +45,6 @@ def test_every_target_is_reached(which, tmp_path):
 @both
 def test_what_cannot_be_baked_is_told(which, tmp_path):
     got = blenders.run(which, tmp_path, "bake_cases", "refused")
-    assert "baking of type Shadow is not supported" in got["shadow"]
     assert "object 'Block' is shown as an exact shape: set its Shape to Mesh" in got["exact"]
     assert "scene 'Scene': only the integrator Path bakes" in got["classic"]
 

@@ -56,6 +56,19 @@ def test_every_pass_is_there_and_filled(case):
         assert line.startswith("view layer 'ViewLayer': passes for denoising are those of Cycles 4")
 
 
+def test_shadow_catchers(case):
+    """With the pass the floor is no part of Combined; without it, its shadows are in the alpha. Denoising moves none of it."""
+    got = case("catchers")["looks"]
+    assert {name: found["messages"] for name, found in got.items()} == dict.fromkeys(got, [])
+    assert all(look["finite"] for found in got.values() for name, look in found.items() if name != "messages")
+    for suffix in ("", " denoised"):
+        shadows, apart = got["shadows" + suffix], got["pass" + suffix]
+        assert "Shadow Catcher" not in shadows and apart["Shadow Catcher"]["channels"] == 3
+        assert apart["Shadow Catcher"]["low"] < 0.7 < 0.95 < apart["Shadow Catcher"]["high"]
+        # Pixels of the floor alone: clear without the pass's shadow, dimmed with it.
+        assert apart["alpha"]["low"] == 0.0 and apart["alpha"]["high"] == shadows["alpha"]["high"] == 1.0
+
+
 def test_passes_that_the_artist_makes(case):
     """An AOV with the name of another pass is none. Groups sum to Combined, up to rounding of a sum with some ten terms."""
     got = case("chosen_passes")

@@ -119,7 +119,7 @@ def test_an_engine_that_dies_is_a_row(folder, tmp_path):
 @pytest.mark.parametrize("which", [MODULE, PROGRAM])
 def test_messages_tell_programs_what_is_missing(which, tmp_path):
     got = blenders.run(which, tmp_path, "corpus_cases", "missing")
-    assert got["first"] == {"feature:shadow catcher": 1, "node:Attribute": 2}
+    assert got["first"] == {"feature:shadow caustics": 1, "node:Attribute": 2}
     # A later render without the feature has no message of it.
     assert got["second"] == {"node:Attribute": 2}
     assert len(got["first lines"]) == 4 and any("slot" in line for line in got["first lines"])

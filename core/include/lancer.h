@@ -172,7 +172,11 @@ enum lancer_ray {
   LANCER_RAY_RAYCAST = 64 /* of a node RAYCAST */
 };
 
-enum lancer_instance_flag { LANCER_INSTANCE_HOLDOUT = 1 /* a hole in the picture: alpha 0 where it is visible */ };
+/* A shadow catcher is an object that stands for one in footage: see lancer_settings.catchers. */
+enum lancer_instance_flag {
+  LANCER_INSTANCE_HOLDOUT = 1, /* a hole in the picture: alpha 0 where it is visible */
+  LANCER_INSTANCE_CATCHER = 2
+};
 
 /* Light linking: an object is a receiver of light and a blocker of shadow rays in one of 64 sets each; 0 unless stated. A lamp
  * or an emitting object names the sets that its light does not reach, and those that its light passes as if they were not
@@ -888,6 +892,7 @@ typedef struct lancer_light {
   float diffuse_color[3];
   float specular_color[3];
   uint32_t lit_surfaces; /* PATH: light samples on the first surfaces of a path alone, so many of them; 0 = on all */
+  uint32_t no_catchers;  /* 1: none of its light is that of shadow catchers alone, see lancer_settings.catchers */
   uint64_t unlit_sets;   /* light linking: bits of the sets of receivers that its light does not reach */
   uint64_t clear_sets;   /* bits of the sets of blockers that its light passes */
 } lancer_light;
@@ -1114,9 +1119,19 @@ enum lancer_pass_kind {
   LANCER_PASS_KIND_AOV_COLOR = 5,       /* [4] see lancer_output; the fourth counts the surfaces that gave a value */
   LANCER_PASS_KIND_AOV_VALUE = 6,       /* [1] */
   LANCER_PASS_KIND_SAMPLES = 7,         /* [1] samples of the pixel. Always kept */
-  LANCER_PASS_KIND_RENDER_TIME = 8      /* [1] milliseconds of this session for the pixel: an equal share of its tile's. Always
+  LANCER_PASS_KIND_RENDER_TIME = 8,     /* [1] milliseconds of this session for the pixel: an equal share of its tile's. Always
                                            kept */
+  /* Kept if settings.catchers is not OBJECTS. The factor is the light of the shadow catchers that the camera sees, divided by
+   * their light without all other objects, and blended with 1 by the picture's alpha. The matte is the picture without them. */
+  LANCER_PASS_KIND_SHADOW_CATCHER = 9, /* [3] 1 where there are none */
+  LANCER_PASS_KIND_CATCHER_MATTE = 10  /* [4] premultiplied */
 };
+
+/* Shadow catchers in the picture. OBJECTS: as any other object. APART: COMBINED is CATCHER_MATTE, beside the pass
+ * SHADOW_CATCHER. SHADOWS: COMBINED is CATCHER_MATTE over a black of the alpha 1 - mean(SHADOW_CATCHER), over the environment
+ * where the film is not transparent; ENVIRONMENT is kept, and also shows the world behind shadow catchers. Error and halves are
+ * always those of the picture with its shadow catchers as objects. */
+enum lancer_catchers { LANCER_CATCHERS_OBJECTS = 0, LANCER_CATCHERS_APART = 1, LANCER_CATCHERS_SHADOWS = 2 };
 
 /* How a scene is rendered. Each comment begins with kind, default and, where there is one, the largest value: a choice of an
  * enum; a number; an amount, finite and not negative; a width, finite and positive; a switch, 0 or 1; bits. */
@@ -1175,6 +1190,7 @@ typedef struct lancer_settings {
   uint32_t light_groups;     /* [number 0 1024] number of groups of lights, each with a pass */
   uint32_t aov_colors;       /* [number 0 1024] number of passes AOV_COLOR */
   uint32_t aov_values;       /* [number 0 1024] number of passes AOV_VALUE */
+  uint32_t catchers;         /* [choice 0 2] PATH: LANCER_CATCHERS_* */
   uint32_t threads;          /* [number 0 1024] 0 = one per processor */
   uint32_t tile_size;        /* [number 0] pixels; 0 = automatic. Changes no pixel */
   uint32_t refines;          /* [switch 0] the session refines, or renders or joins parts of a picture */
@@ -1297,6 +1313,11 @@ LANCER_API lancer_status lancer_combine_denoised(uint32_t width, uint32_t height
                                                  const float *errors, const float *first, const float *second, double step,
                                                  uint32_t combines, double confidence, uint32_t block, float *picture,
                                                  float *bars, lancer_denoised_error *error);
+/* Composes COMBINED of LANCER_CATCHERS_SHADOWS from its parts, such as denoised ones, of count pixels: matte[count][4], the
+ * pass CATCHER_MATTE; catcher[count][3], SHADOW_CATCHER; environment[count][3], ENVIRONMENT, or NULL for a transparent film.
+ * picture[count][4] may be matte. */
+LANCER_API lancer_status lancer_compose_catchers(uint64_t count, const float *matte, const float *catcher,
+                                                 const float *environment, float *picture);
 
 /* ---- parts of a picture ------------------------------------------------------------------------------------------
  *
@@ -1346,6 +1367,7 @@ typedef struct lancer_part {
   uint32_t split_lights, split_paths; /* the numbers in use, as in settings */
   uint32_t tiles;                     /* number of tiles with samples */
   uint32_t first, end;                /* the lowest number of a sample, and the highest plus 1 */
+  uint32_t reserved;
 } lancer_part;
 
 /* Writes the number of pixels of the first capacity tiles; *count receives the number of tiles. */

@@ -1,12 +1,15 @@
 // Sessions and their pictures in the C interface.
 #include "lancer_probes.h"
 #include "objects.h"
+#include "render/catchers.h"
 #include "render/denoised.h"
 #include "render/fill_bake.h"
 #include "render/session.h"
+#include "simd/vectors.h"
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/type_ptr.hpp>
 #include <utility>
 
 namespace {
@@ -164,6 +167,24 @@ lancer_status lancer_combine_denoised(uint32_t width, uint32_t height, const flo
     const DenoisedError from = combine_denoised(input, confidence, block, picture, of_blocks);
     std::copy(of_blocks.begin(), of_blocks.end(), bars);
     *error = {from.error, from.low, from.high, from.moved};
+    return LANCER_OK;
+  });
+}
+
+lancer_status lancer_compose_catchers(uint64_t count, const float *matte, const float *catcher, const float *environment,
+                                      float *picture) {
+  return guard([&] {
+    require(matte, "compose_catchers: matte");
+    require(catcher, "compose_catchers: catcher");
+    require(picture, "compose_catchers: picture");
+    for (uint64_t pixel = 0; pixel < count; ++pixel) {
+      const glm::dvec4 over(glm::make_vec4(matte + 4 * pixel));
+      const glm::dvec3 factor(glm::make_vec3(catcher + 3 * pixel));
+      const glm::dvec4 seen = environment ? over_environment(over, factor, glm::dvec3(glm::make_vec3(environment + 3 * pixel)))
+                                          : over_shadow(over, factor);
+      for (int i = 0; i < 4; ++i)
+        picture[4 * pixel + i] = nearest_float(seen[i]);
+    }
     return LANCER_OK;
   });
 }

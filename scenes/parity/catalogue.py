@@ -50,6 +50,7 @@ SUBJECTS = (
     "subdivisions",
     "subdivisions_inputs",
     "films",
+    "catchers",
     "light_paths",
     "fast_gi",
     "passes_light",

@@ -175,8 +175,8 @@ def unsupported_features():
     sets = layer.freestyle_settings.linesets
     for lines in list(sets):
         sets.remove(lines)
-    # A shadow catcher.
-    cube.is_shadow_catcher = True
+    # Shadow caustics.
+    cube.cycles.is_caustics_receiver = True
     return _outcome()
 
 

@@ -83,11 +83,11 @@ def missing():
         stage.cube(material=material, location=(2 * number, 0, 0.5))
     # A warning does not count as a missing feature.
     scene.objects["Cube"].data.materials[0] = None
-    scene.objects["Cube"].is_shadow_catcher = True
+    scene.objects["Cube"].cycles.is_caustics_receiver = True
     result = {}
     for name in ("first", "second"):
         bpy.ops.render.render()
         result[name] = dict(engine.last_missing[scene.name])
         result[f"{name} lines"] = list(engine.last_messages[scene.name])
-        scene.objects["Cube"].is_shadow_catcher = False
+        scene.objects["Cube"].cycles.is_caustics_receiver = False
     return result

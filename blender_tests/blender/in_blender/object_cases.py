@@ -8,11 +8,12 @@ from addon.bindings.enums import InstanceFlag, Ray
 
 
 def _rows(snapshot):
-    """Return {name: [(ray types that it is hidden from, holdout), ...]}, one for each instance, sorted by height."""
+    """Return {name: [(ray types that it is hidden from, its flags), ...]}, one for each instance, sorted by height."""
     table, rows = snapshot.instances, {}
     for i in sorted(range(len(table)), key=lambda i: table.matrices[i, 2, 3]):
         hidden = [ray.name for ray in Ray if table.hidden_from[i] & ray]
-        rows.setdefault(table.names[table.name_indices[i]], []).append([hidden, bool(table.flags[i] & InstanceFlag.HOLDOUT)])
+        flags = [flag.name for flag in InstanceFlag if table.flags[i] & flag]
+        rows.setdefault(table.names[table.name_indices[i]], []).append([hidden, flags])
     return rows
 
 

@@ -126,6 +126,25 @@ def chosen_passes():
     }
 
 
+def catchers():
+    """Return the looks of a floor that catches shadows: of its pass, and of Combined with and without it, denoised and not."""
+    scene = _gallery()
+    layer = scene.view_layers[0]
+    bpy.data.objects["Plane"].is_shadow_catcher = True
+    scene.render.film_transparent = True
+    found = {}
+    for has_pass in (False, True):
+        layer.cycles.use_pass_shadow_catcher = has_pass
+        for denoises in (False, True):
+            scene.lancer.use_denoising = denoises
+            pictures, messages = _read(scene)
+            name = f"{'pass' if has_pass else 'shadows'}{' denoised' if denoises else ''}"
+            found[name] = {part: _look(pictures[part]) for part in ("Combined", "Shadow Catcher") if part in pictures}
+            found[name]["alpha"] = _look(pictures["Combined"][..., 3:])
+            found[name]["messages"] = [line for line in messages if "catcher" in line]
+    return {"looks": found}
+
+
 def no_pass():
     scene = _gallery()
     _ask(scene.view_layers[0], "z", on=False)

@@ -29,6 +29,7 @@ PASSES = {
     "Emission": ("use_pass_emit", "Emit"),
     "Environment": ("use_pass_environment", "Env"),
     "Ambient Occlusion": ("use_pass_ambient_occlusion", "AO"),
+    "Shadow Catcher": ("use_pass_shadow_catcher", "Shadow Catcher"),
     "Denoising Albedo": ("denoising_store_passes", "Denoising Albedo"),
     "Denoising Normal": ("denoising_store_passes", "Denoising Normal"),
     "Denoising Depth": ("denoising_store_passes", "Denoising Depth"),
@@ -59,7 +60,7 @@ def unbias(scene, case, samples, seed):
 
 
 def _ask_for(view_layer, scene, switch):
-    owners = (view_layer.cycles, scene.cycles) if switch == "denoising_store_passes" else (view_layer,)
+    owners = (view_layer.cycles, scene.cycles) if switch == "denoising_store_passes" else (view_layer, view_layer.cycles)
     for owner in owners:
         if hasattr(owner, switch):
             setattr(owner, switch, True)

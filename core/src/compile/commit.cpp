@@ -107,6 +107,16 @@ void make_materials_ready(Scene &scene, Description &description, const BuildCon
 
 } // namespace
 
+namespace {
+
+// Hides all objects but shadow catchers from rays among these.
+void hide_from_catchers(std::span<Instance> instances) {
+  for (Instance &instance : instances)
+    instance.hidden_from = instance.catcher ? hidden_of_catcher(instance.hidden_from) : hidden_of_other(instance.hidden_from);
+}
+
+} // namespace
+
 std::shared_ptr<const Scene> commit(const Description &given, AcceleratorKind kind, const BuildContext &context,
                                     const Scene *before) {
   const auto start = std::chrono::steady_clock::now();
@@ -115,6 +125,8 @@ std::shared_ptr<const Scene> commit(const Description &given, AcceleratorKind ki
   const Features features = find_features(description);
   scene->features = features.bits;
   scene->shapes = features.shapes;
+  if (features.bits & kFeatureCatchers)
+    hide_from_catchers(description.instances);
   // Displace vertices before computing bounds and lights from them.
   const MadeMeshes *const made_before = before ? &before->made_meshes : nullptr;
   if (features.bits & kFeatureDisplacement)

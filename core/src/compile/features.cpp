@@ -180,6 +180,8 @@ Features find_features(const Description &description) {
       features.bits |= kFeatureVisibility;
     if (instance.holdout)
       features.bits |= kFeatureHoldout;
+    if (instance.catcher)
+      features.bits |= kFeatureCatchers;
     if (instance.key_count > 0 || (instance.kind == ShapeKind::Mesh && description.meshes[instance.mesh]->key_count > 0))
       features.bits |= kFeatureMotion;
     if (instance.kind == ShapeKind::Mesh) {
@@ -209,11 +211,11 @@ Features find_features(const Description &description) {
 std::string feature_names(const Features &features) {
   static const char *const shapes[] = {"lambert",    "beckmann",  "mirror", "dielectric", "phong", "blinn-phong", "matte",
                                        "microfacet", "ashikhmin", "sheen",  "toon",       "hair",  "subsurface"};
-  static const char *const bits[] = {"transparency", "triangles", "instances",    "spheres",         "planes",
-                                     "cylinders",    "cones",     "point-lights", "spot-lights",     "sun-lights",
-                                     "area-lights",  "emitters",  "environment",  "environment-map", "vertex-colors",
-                                     "nodes",        "textures",  "displacement", "holdout",         "visibility",
-                                     "glass",        "portals",   "walks",        "mipmaps",         "motion"};
+  static const char *const bits[] = {
+      "transparency",  "triangles",   "instances",  "spheres",      "planes",         "cylinders",   "cones",
+      "point-lights",  "spot-lights", "sun-lights", "area-lights",  "emitters",       "environment", "environment-map",
+      "vertex-colors", "nodes",       "textures",   "displacement", "holdout",        "visibility",  "glass",
+      "portals",       "walks",       "mipmaps",    "motion",       "shadow-catchers"};
   static_assert(std::size(shapes) == kLobeShapes);
   std::string text;
   const auto add = [&](const char *name) {

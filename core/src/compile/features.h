@@ -35,6 +35,7 @@ enum Feature : uint32_t {
   kFeatureSubsurface = 1u << 22, // light enters some surface
   kFeatureMipmaps = 1u << 23,    // some node reads levels of an image
   kFeatureMotion = 1u << 24,     // some object moves or changes its shape
+  kFeatureCatchers = 1u << 25,   // some object is a shadow catcher
 };
 
 struct Features {

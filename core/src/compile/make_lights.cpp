@@ -145,7 +145,7 @@ Light place_light(const LightDescription &from, const Normalisation &normalisati
     light.tan_half_spread = tan(half);
     light.spread_scale = 1.0 / (light.tan_half_spread - half);
   }
-  light.hidden_from = from.hidden_from;
+  light.hidden_from = from.no_catchers ? hidden_of_other(from.hidden_from) : hidden_of_catcher(from.hidden_from);
   light.no_shadow = from.no_shadow;
   light.light_group = from.light_group;
   light.links = from.links;

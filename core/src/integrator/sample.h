@@ -54,7 +54,7 @@ struct IntegratorSettings {
 
   IntegratorKind kind() const { return static_cast<IntegratorKind>(integrator); }
   FilterKind filter() const { return static_cast<FilterKind>(pixel_filter); }
-  ExtraLayout extras() const { return {light_groups, aov_colors, aov_values, mattes}; }
+  ExtraLayout extras() const { return {light_groups, aov_colors, aov_values, mattes, catchers != 0}; }
   bool all_features() const { return features != 0; }
   // Whether glass of at most this alpha_x alpha_y leaves the film transparent.
   bool clear_glass(float alpha2) const {

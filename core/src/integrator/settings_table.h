@@ -59,6 +59,7 @@ enum class Pass : uint32_t {
   X(Number, light_groups, 0u, 1024u)                                                                                           \
   X(Number, aov_colors, 0u, 1024u)                                                                                             \
   X(Number, aov_values, 0u, 1024u)                                                                                             \
+  X(Choice, catchers, 0u, 2u)                                                                                                  \
   X(Number, threads, 0u, 1024u)                                                                                                \
   X(Number, tile_size, 0u, 0xffffffffu)                                                                                        \
   X(Switch, refines, false, 0xffffffffu)

@@ -53,6 +53,9 @@ IntegratorSettings read_settings(const lancer_settings &source) {
   settings.splits = {std::max(settings.split_lights, 1u), std::max(settings.split_paths, 1u)};
   // The film computes the error itself; samples do not contain it.
   settings.passes &= ~bit(Pass::Error);
+  // The shadows of catchers lie over the environment.
+  if (settings.catchers == LANCER_CATCHERS_SHADOWS && !settings.film_transparent)
+    settings.passes |= bit(Pass::Environment);
   // Samples contain the passes whose halves are requested.
   for (uint32_t pass = 0; pass < kPassCount; ++pass)
     if (settings.passes & 1u << pass)

@@ -136,6 +136,9 @@ public:
   // Passes without a bit, see lancer_pass_kind. extra: the first of count channels of ExtraLayout.
   void read_extra(uint32_t extra, uint32_t count, std::span<float> out) const;
   void read_mattes(uint32_t kind, uint32_t number, std::span<float> out) const;
+  void read_catcher(std::span<float> out) const;
+  // Writes Combined where shadow catchers leave only their shadows; over_environment: the film is not transparent.
+  void read_shadows(bool over_environment, std::span<float> out) const;
   void read_sample_count(std::span<float> out) const;
   void read_render_time(std::span<float> out) const;
   bool has(Pass pass) const { return (passes_ & bit(pass)) != 0; }
@@ -178,6 +181,11 @@ private:
   void join_mattes(const Node &earlier, Sums &later) const;
   // Calls write(tile, pixel, target) for each pixel that has samples; others are 0.
   template <class Write> void read_each(uint32_t width, std::span<float> out, Write &&write) const;
+  // Returns the mean of a pixel's summed channel, joined along the tree.
+  static double mean_of(const Tile &tile, size_t place);
+  glm::dvec4 matte_of(const Tile &tile, uint32_t pixel) const;
+  // Returns the pass SHADOW_CATCHER of a pixel.
+  glm::dvec3 catcher_of(const Tile &tile, uint32_t pixel) const;
   void keep_differences(const Sums &earlier, uint32_t level, Sums &later) const;
   glm::dvec3 mean_color(Pass pass, const Sums &sums, uint32_t level, uint32_t pixel) const;
   double mean_luminance(const Sums &sums, uint32_t level, uint32_t pixel) const;

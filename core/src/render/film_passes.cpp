@@ -149,15 +149,17 @@ void Film::read(Pass pass, std::span<float> out) const {
   }
 }
 
+double Film::mean_of(const Tile &tile, size_t place) {
+  // Join the waiting sums, later and smaller ones first, as the tree would.
+  double sum = 0.0;
+  for (auto node = tile.nodes.rbegin(); node != tile.nodes.rend(); ++node)
+    sum = node->sums.channels[place] + sum;
+  return sum / double(tile.count);
+}
+
 void Film::read_means(Pass pass, const Tile &tile, uint32_t pixel, float *target) const {
   const size_t place = size_t(pixel) * layout_.summed_channels;
-  const auto mean = [&](Pass of, uint32_t channel) {
-    // Join the waiting sums, later and smaller ones first, as the tree would.
-    double sum = 0.0;
-    for (auto node = tile.nodes.rbegin(); node != tile.nodes.rend(); ++node)
-      sum = node->sums.channels[place + layout_.at[uint32_t(of)] + channel] + sum;
-    return sum / double(tile.count);
-  };
+  const auto mean = [&](Pass of, uint32_t channel) { return mean_of(tile, place + layout_.at[uint32_t(of)] + channel); };
   const auto color = [&](Pass of) { return glm::dvec3(mean(of, 0), mean(of, 1), mean(of, 2)); };
   if (divisor(pass) != pass) {
     // A colour may be so dark that the quotient exceeds the range of float.

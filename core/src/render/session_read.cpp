@@ -17,8 +17,10 @@ uint32_t Session::channels_of(uint32_t pass) {
   case LANCER_PASS_KIND_MATERIAL_MATTES:
   case LANCER_PASS_KIND_ASSET_MATTES:
   case LANCER_PASS_KIND_AOV_COLOR:
+  case LANCER_PASS_KIND_CATCHER_MATTE:
     return 4;
   case LANCER_PASS_KIND_LIGHT_GROUP:
+  case LANCER_PASS_KIND_SHADOW_CATCHER:
     return 3;
   case LANCER_PASS_KIND_AOV_VALUE:
   case LANCER_PASS_KIND_SAMPLES:
@@ -51,6 +53,12 @@ void Session::read(uint32_t pass, std::span<float> out) const {
   case LANCER_PASS_KIND_AOV_VALUE:
     require(number < extras.values);
     return film_.read_extra(extras.value(number), 1, out);
+  case LANCER_PASS_KIND_SHADOW_CATCHER:
+    require(extras.catchers);
+    return film_.read_catcher(out);
+  case LANCER_PASS_KIND_CATCHER_MATTE:
+    require(extras.catchers);
+    return film_.read_extra(extras.matte(), 4, out);
   case LANCER_PASS_KIND_SAMPLES:
     return film_.read_sample_count(out);
   case LANCER_PASS_KIND_RENDER_TIME:
@@ -64,6 +72,10 @@ void Session::read(uint32_t pass, std::span<float> out) const {
     return;
   }
   require(film_.has(static_cast<Pass>(pass)));
+  if (static_cast<Pass>(pass) == Pass::Combined && settings_.catchers == LANCER_CATCHERS_SHADOWS)
+    return film_.read_shadows(!settings_.film_transparent, out);
+  if (static_cast<Pass>(pass) == Pass::Combined && extras.catchers)
+    return film_.read_extra(extras.matte(), 4, out);
   film_.read(static_cast<Pass>(pass), out);
 }
 

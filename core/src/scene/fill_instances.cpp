@@ -70,7 +70,7 @@ void check_instance(const Description &description, const std::string &object, c
   if (given.shading > LANCER_SHADING_PHONG)
     bad_argument(object + ": shading " + std::to_string(given.shading) + " is not one of 0 ... 3");
   check_rays(object, given.hidden_from);
-  check_flags(object + ": ", given.flags, LANCER_INSTANCE_HOLDOUT);
+  check_flags(object + ": ", given.flags, LANCER_INSTANCE_HOLDOUT | LANCER_INSTANCE_CATCHER);
   for (const uint32_t set : {given.receiver_set, given.blocker_set})
     if (set >= kLinkSets)
       bad_argument(object + ": set " + std::to_string(set) + " of light linking is not one of 0 ... 63");
@@ -144,6 +144,7 @@ void add_instances(Description &description, uint32_t count, const lancer_instan
     instance.hidden_from = given.hidden_from;
     instance.terminator = std::isfinite(given.terminator) ? std::clamp(given.terminator, 0.0f, 1.0f) : 0.0f;
     instance.holdout = (given.flags & LANCER_INSTANCE_HOLDOUT) != 0;
+    instance.catcher = (given.flags & LANCER_INSTANCE_CATCHER) != 0;
     instance.receiver_set = given.receiver_set;
     instance.blocker_set = given.blocker_set;
     instance.links = {given.unlit_sets, given.clear_sets};

@@ -118,6 +118,7 @@ LightDescription read_light(const lancer_light &source, size_t number, Images im
     light.spread = reader.read("spread", source.spread, 0.0f, glm::pi<float>());
     light.hidden_from = source.hidden_from;
     light.no_shadow = source.no_shadow != 0;
+    light.no_catchers = source.no_catchers != 0;
     light.links = {source.unlit_sets, source.clear_sets};
     light.lit_surfaces = source.lit_surfaces;
     light.falloff = static_cast<Falloff>(source.falloff);

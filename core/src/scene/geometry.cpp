@@ -69,9 +69,10 @@ bool Instance::same(const Instance &other) const {
          shading == other.shading && mesh == other.mesh && first_slot == other.first_slot && slot_count == other.slot_count &&
          object_index == other.object_index && object_matte == other.object_matte && asset_matte == other.asset_matte &&
          light_group == other.light_group && hidden_from == other.hidden_from && holdout == other.holdout &&
-         bits(terminator, other.terminator) && number == other.number && bits(flat_axis, other.flat_axis) &&
-         receiver_set == other.receiver_set && blocker_set == other.blocker_set && links == other.links &&
-         fast_distance == other.fast_distance && first_key == other.first_key && key_count == other.key_count;
+         catcher == other.catcher && bits(terminator, other.terminator) && number == other.number &&
+         bits(flat_axis, other.flat_axis) && receiver_set == other.receiver_set && blocker_set == other.blocker_set &&
+         links == other.links && fast_distance == other.fast_distance && first_key == other.first_key &&
+         key_count == other.key_count;
 }
 
 MeshAttribute &Mesh::add_attribute(uint32_t attribute, Domain domain, uint32_t channels) {

@@ -139,8 +139,9 @@ struct Instance {
   uint32_t object_index = 0;
   uint32_t object_matte = 0, asset_matte = 0; // ids; 0 = none
   uint32_t light_group = 0;                   // of its own light; 0 = none
-  uint32_t hidden_from = 0;                   // RayKind bits
+  uint32_t hidden_from = 0;                   // RayKind bits; in a scene with shadow catchers also the second ones
   bool holdout = false;
+  bool catcher = false;
   float terminator = 0.0f;   // of smooth meshes: cosine below which shadow rays start on the curved surface
   uint32_t number = 0;       // in the user's order of adding
   glm::dvec3 flat_axis{0.0}; // object space, unit: the direction that a flattening placement loses; else 0

@@ -34,6 +34,7 @@ struct LightDescription {
   float spread = 3.14159265f;
   uint32_t hidden_from = 0; // RayKind bits
   bool no_shadow = false;
+  bool no_catchers = false;
   uint32_t light_group = 0; // 0 = none
   LightLinks links;
   uint32_t lit_surfaces = 0; // 0: all

@@ -11,6 +11,16 @@ namespace lancer {
 
 inline constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
 
+// Bits of Ray::kinds and of hidden_from. Each kind of ray has a second bit for rays among shadow catchers alone, from which all
+// other objects and their light are hidden.
+inline constexpr uint32_t kCatcherShift = 16;
+inline constexpr uint32_t kOfCatchers = (2u * RayKind::Raycast - 1u) << kCatcherShift;
+inline constexpr uint32_t kCameraKinds = RayKind::Camera | RayKind::Camera << kCatcherShift;
+constexpr uint32_t among_catchers(uint32_t kinds) { return kinds << kCatcherShift; }
+// Returns what is hidden from rays of both sorts, of an object or a light that is hidden from these kinds.
+constexpr uint32_t hidden_of_catcher(uint32_t hidden_from) { return hidden_from | among_catchers(hidden_from); }
+constexpr uint32_t hidden_of_other(uint32_t hidden_from) { return hidden_from | kOfCatchers; }
+
 // Points o + t d with tmin < t < tmax, in the normalised world. d need not be unit: t is in units of its length. All in double:
 // a hit point keeps the digits of the surface, so that no visible offset is needed.
 struct Ray {
@@ -22,8 +32,8 @@ struct Ray {
   // of the origin is skipped.
   uint32_t skip_instance = kNone;
   uint32_t skip_primitive = kNone;
-  // Bits of RayKind: the kind of the ray. A ray passes an object that is hidden from all of its kinds as if the object did
-  // not exist.
+  // Bits of RayKind: the kind of the ray; or their second bits. A ray passes an object that is hidden from all of its kinds as
+  // if the object did not exist.
   uint32_t kinds = ~0u;
   // When the ray meets things that move: see scene/motion.h.
   float time = 0.5f;

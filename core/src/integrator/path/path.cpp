@@ -24,7 +24,7 @@ void PathIntegrator::run(std::span<const SampleAddress> addresses, std::span<Sam
     // Keep the light before the last bounces, from which the light beyond them is estimated.
     if (last_bounces_.due(turn))
       last_bounces_.note(
-          turn, queue_.paths.size(), settings_.splits.paths > 1 || walk_ || haunted_,
+          turn, queue_.paths.size(), settings_.splits.paths > 1 || walk_ || haunted_ || catches_,
           [&](size_t i) { return queue_.paths[i].sample; }, gathered);
     // Add the light samples that no surface occludes.
     counts_.shadow +=
@@ -82,6 +82,8 @@ void PathIntegrator::shade() {
     add_linked_lights();
   if (haunted_)
     send_ghosts();
+  if (catches_)
+    send_among_catchers();
   film_.count_occluded(queue_.paths, queue_.rays, hits_, occlusion_);
   missed_.clear();
   queues_.begin();
@@ -91,7 +93,7 @@ void PathIntegrator::shade() {
     } else {
       if (film_.wants_outputs(queue_.paths[i]))
         film_.add_sky_outputs(queue_.paths[i], queue_.rays[i], queue_.from[i].p);
-      if (film_.miss(queue_.paths[i]) && queue_.paths[i].shows_light(scene_.world.hidden_from))
+      if (film_.miss(queue_.paths[i]) && queue_.paths[i].shows_light(hidden_of_catcher(scene_.world.hidden_from)))
         missed_.push_back(i);
     }
   add_environment();
@@ -135,7 +137,7 @@ constexpr uint32_t kPathsOfGhost = 16;
 void PathIntegrator::send_ghosts() {
   for (size_t i = 0, count = queue_.paths.size(); i < count; ++i) {
     const Path &path = queue_.paths[i];
-    if (!hits_[i].valid() || path.is_spent(settings_))
+    if (!hits_[i].valid() || path.is_spent(settings_) || path.of_catchers)
       continue;
     const bool over = path.is_over_limit(settings_);
     if (!over && !(path.lacks_caustics() && (settings_.no_reflections || settings_.no_refractions)))
@@ -146,6 +148,27 @@ void PathIntegrator::send_ghosts() {
     Path ghost = path;
     ghost.haunt(over ? Ghost::Bounces : Ghost::Caustics, float(kPathsOfGhost));
     queue_.paths.push_back(ghost);
+    queue_.rays.push_back(Ray(queue_.rays[i]));
+    queue_.from.push_back(Scattering(queue_.from[i]));
+    hits_.push_back(Hit(hits_[i]));
+  }
+}
+
+// Lets paths that meet a shadow catcher in the camera's view go on twice: among all objects, and among catchers alone.
+void PathIntegrator::send_among_catchers() {
+  behind_.clear();
+  const bool shows_sky = (settings_.passes & bit(Pass::Environment)) && !settings_.film_transparent;
+  for (size_t i = 0, count = queue_.paths.size(); i < count; ++i) {
+    Path &path = queue_.paths[i];
+    if (!hits_[i].valid() || !film_.splits_at(path, scene_.geometry.instances[hits_[i].instance]))
+      continue;
+    film_.meet_catcher(path);
+    if (shows_sky && path.shows_light(hidden_of_catcher(scene_.world.hidden_from)))
+      behind_.push_back(i);
+    path.caught = true;
+    Path among = path;
+    among.leave_others();
+    queue_.paths.push_back(among);
     queue_.rays.push_back(Ray(queue_.rays[i]));
     queue_.from.push_back(Scattering(queue_.from[i]));
     hits_.push_back(Hit(hits_[i]));
@@ -168,30 +191,35 @@ void PathIntegrator::add_linked_lights() {
       ray.d = met.target - ray.o;
       ray.tmax = 1.0;
     }
-    ray.kinds = RayKind::Shadow;
+    ray.kinds = path.of_catchers ? among_catchers(RayKind::Shadow) : uint32_t(RayKind::Shadow);
     shadow_.push(ray, film_.waiting(path, met.group), contribution, path.passed_through, met.links);
   }
 }
 
-// Adds the environment that paths see behind all surfaces. A constant one is no light that is sampled: its weight is 1.
+// Adds the environment that paths see behind all surfaces, and that behind shadow catchers to its pass.
 void PathIntegrator::add_environment() {
+  add_environment(missed_, [&](const Path &path, const glm::vec3 &radiance, float weight) {
+    film_.add(path, seen_beta(path) * radiance * weight, true, scene_.lights.environment().light_group());
+  });
+  add_environment(behind_, [&](const Path &path, const glm::vec3 &radiance, float) { film_.add_behind(path, radiance); });
+}
+
+// Calls arrive(path, radiance, weight) for paths that see the environment. A constant one is no light that is sampled:
+// its weight is 1.
+template <class Arrive> void PathIntegrator::add_environment(std::span<const size_t> paths, Arrive &&arrive) {
   const Environment &environment = scene_.lights.environment();
-  for (size_t i = 0; i < missed_.size() && !environment.varies(); ++i)
-    film_.add(queue_.paths[missed_[i]], seen_beta(queue_.paths[missed_[i]]) * environment.constant(), true,
-              environment.light_group());
-  for (size_t first = 0; first < missed_.size() && environment.varies(); first += kBlockLanes) {
-    const auto now = std::span(missed_).subspan(first, std::min<size_t>(kBlockLanes, missed_.size() - first));
+  for (size_t i = 0; i < paths.size() && !environment.varies(); ++i)
+    arrive(queue_.paths[paths[i]], environment.constant(), 1.0f);
+  for (size_t first = 0; first < paths.size() && environment.varies(); first += kBlockLanes) {
+    const auto now = paths.subspan(first, std::min<size_t>(kBlockLanes, paths.size() - first));
     for (uint32_t lane = 0; lane < now.size(); ++lane) {
       const Path &path = queue_.paths[now[lane]];
       met_.add_miss(lane, queue_.rays[now[lane]].d, path.light_path(0.0, 0.0),
-                    path.kinds == RayKind::Camera ? &queue_.from[now[lane]].p : nullptr);
+                    path.kinds & kCameraKinds ? &queue_.from[now[lane]].p : nullptr);
     }
     met_.look_at_sky(uint32_t(now.size()));
-    for (uint32_t lane = 0; lane < now.size(); ++lane) {
-      const Path &path = queue_.paths[now[lane]];
-      film_.add(path, seen_beta(path) * met_.sky_radiance(lane) * met_.sky_weight(lane, queue_.from[now[lane]]), true,
-                environment.light_group());
-    }
+    for (uint32_t lane = 0; lane < now.size(); ++lane)
+      arrive(queue_.paths[now[lane]], met_.sky_radiance(lane), met_.sky_weight(lane, queue_.from[now[lane]]));
   }
 }
 
@@ -342,12 +370,17 @@ void PathIntegrator::send_shadow(uint32_t lane) {
     if (scene_.lights.is_spent(chosen, path.scatterings))
       waiting.ghost = Ghost::Bounces;
   };
+  // Lights of other objects are hidden from a path among shadow catchers.
+  if (path.of_catchers && (scene_.lights.hidden_from(chosen) & kOfCatchers) == kOfCatchers)
+    return;
   Ray &ray = shadow_.push(get(light_.lit().contribution, lane), path.passed_through, scene_.lights.links(chosen), fill);
   if (scene_.lights.no_shadow(chosen))
     return ShadowStage::leave_out(ray);
   if (shadow_.asks_light_path())
     shadow_.set_light_path(asking_path(lane));
   write_shadow_ray(scene_, surface_, lane, light_.samples(), light_.lit(), ray);
+  if (path.of_catchers)
+    ray.kinds = among_catchers(ray.kinds);
 }
 
 } // namespace lancer

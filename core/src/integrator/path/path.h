@@ -28,9 +28,9 @@ public:
   PathIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
       : scene_(scene), settings_(settings), spread_at_eye_(camera), width_at_eye_(PixelCone(camera).base),
         camera_(camera, scene.motion, settings), film_(scene, camera, settings), hit_(scene, camera), met_(scene, camera),
-        haunted_(changes_paths(settings)), queues_(scene), textures_(scene), surface_(scene, camera, settings),
-        light_(scene, &camera), occlusion_(scene, settings), ambient_(scene, settings.fast_distance),
-        shadow_(scene, camera, settings), last_bounces_(settings.max_bounces) {
+        haunted_(changes_paths(settings)), catches_(settings.catchers && (scene.features & kFeatureCatchers)), queues_(scene),
+        textures_(scene), surface_(scene, camera, settings), light_(scene, &camera), occlusion_(scene, settings),
+        ambient_(scene, settings.fast_distance), shadow_(scene, camera, settings), last_bounces_(settings.max_bounces) {
     if (std::ranges::any_of(scene.materials, [](const MaterialView &material) { return material.program.looks_around; }))
       surface_.look_by(node_rays_.emplace(scene).functions());
     if (scene.lights.passes_blockers())
@@ -82,7 +82,9 @@ private:
   void add_lamps();
   void add_linked_lights();
   void send_ghosts();
+  void send_among_catchers();
   void add_environment();
+  template <class Arrive> void add_environment(std::span<const size_t> paths, Arrive &&arrive);
   void put_in_lane(size_t number, const MaterialView &material);
   void shade_block();
   void leave();
@@ -122,6 +124,7 @@ private:
   MetLights met_;
   std::optional<LinkedLights> linked_; // if some light passes blockers
   const bool haunted_;                 // limits of kinds of bounces or caustics change paths
+  const bool catches_;                 // paths may meet shadow catchers
   ShadingQueues queues_;
   TexturePrefetch textures_;
   std::optional<SceneNodeRays> node_rays_; // if a node looks around
@@ -141,6 +144,7 @@ private:
   std::vector<Hit> hits_;      // of the queue
   std::vector<uint32_t> left_; // surfaces that each path may still pass
   std::vector<size_t> missed_; // numbers of the paths that see the environment
+  std::vector<size_t> behind_; // and of those whose shadow catcher shows the environment to its pass
   // The block, by lane.
   size_t path_[kBlockLanes];     // of the path
   uint32_t leader_[kBlockLanes]; // number of the leader among the branches

@@ -18,6 +18,7 @@ void PathFilm::begin(std::span<const SampleAddress> addresses, std::span<SampleR
   results_ = results;
   energy = {};
   indirect_.assign(results.size() * sums(), glm::vec3(0.0f));
+  catchers_.begin(results.size(), sums());
   shares_.resize(indirect_.size());
   if (!only_combined_ || records_.size() != results.size())
     records_.assign(results.size(), Record());
@@ -29,36 +30,58 @@ void PathFilm::end() {
   for (uint32_t sample = 0; sample < results_.size(); ++sample) {
     if (settings_.clamp_indirect > 0.0f)
       clamp(sample);
-    for (uint32_t i = 0; i < sums(); ++i)
-      results_[sample].radiance += indirect_[sample * sums() + i];
+    for (const glm::vec3 &light : indirect(sample))
+      results_[sample].radiance += light;
+    if (catchers_.keeps())
+      catchers_.end(sample, results_[sample], *extras_);
   }
 }
 
+namespace {
+
+// Indirect light of the paths of a sample, before and after clamping.
+struct Clamped {
+  glm::vec3 found{0.0f}, kept{0.0f};
+  float factor = 1.0f; // of the last path that was clamped
+};
+
 // Clamps the light of each path of a sample as if the path were the only one: its own light times the number of paths, plus the
-// shared light.
-void PathFilm::clamp(uint32_t sample) {
-  const auto paths = float(settings_.splits.paths);
-  const glm::vec3 shared = before_splitting(sample);
-  glm::vec3 all(0.0f), kept(0.0f);
-  float factor = 1.0f;
-  for (uint32_t branch = 0; branch < settings_.splits.paths; ++branch) {
-    const glm::vec3 found = shared + paths * indirect_[sample * sums() + branch];
+// shared light, which is the last of several sums. remove(luminance): receives the light of a path that is clamped.
+template <class Remove> Clamped clamp_paths(std::span<glm::vec3> sums, float limit, Remove &&remove) {
+  const size_t count = sums.size() > 1 ? sums.size() - 1 : 1;
+  const auto paths = float(count);
+  const glm::vec3 shared = sums.size() > 1 ? sums.back() : glm::vec3(0.0f);
+  Clamped clamped;
+  for (size_t branch = 0; branch < count; ++branch) {
+    const glm::vec3 found = shared + paths * sums[branch];
     float share = 1.0f;
-    if (const float top = largest(glm::abs(found)); top > settings_.clamp_indirect) {
-      factor = share = settings_.clamp_indirect / top;
-      Energy::remove(energy.clipped, luminance(found) * (1.0f - share) / float(paths));
+    if (const float top = largest(glm::abs(found)); top > limit) {
+      clamped.factor = share = limit / top;
+      remove(luminance(found) * (1.0f - share) / paths);
     }
-    all += found;
-    kept += found * share;
+    clamped.found += found;
+    clamped.kept += found * share;
   }
-  if (factor == 1.0f)
+  if (clamped.factor != 1.0f) {
+    std::fill(sums.begin(), sums.end(), glm::vec3(0.0f));
+    sums[0] = clamped.kept / paths;
+  }
+  return clamped;
+}
+
+} // namespace
+
+void PathFilm::clamp(uint32_t sample) {
+  if (catchers_.keeps())
+    clamp_paths(catchers_.indirect(sample), settings_.clamp_indirect, [](float) {});
+  const Clamped clamped =
+      clamp_paths(indirect(sample), settings_.clamp_indirect, [&](float removed) { Energy::remove(energy.clipped, removed); });
+  if (clamped.factor == 1.0f)
     return add_indirect_groups(sample, glm::vec3(1.0f));
-  std::fill_n(indirect_.begin() + ptrdiff_t(sample * sums()), sums(), glm::vec3(0.0f));
-  indirect_[sample * sums()] = kept / paths;
   // Passes store the sum over the paths: scale them by the mean factor.
-  glm::vec3 of_passes(factor);
+  glm::vec3 of_passes(clamped.factor);
   for (int channel = 0; channel < 3 && sums() > 1; ++channel)
-    of_passes[channel] = all[channel] != 0.0f ? kept[channel] / all[channel] : 1.0f;
+    of_passes[channel] = clamped.found[channel] != 0.0f ? clamped.kept[channel] / clamped.found[channel] : 1.0f;
   passes.scale_indirect(results_[sample], of_passes);
   add_indirect_groups(sample, of_passes);
 }
@@ -70,13 +93,14 @@ void PathFilm::add_indirect_groups(uint32_t sample, const glm::vec3 &factor) {
 }
 
 // Returns direct light, clamped as in Cycles: each contribution by the mean of its channels. parts: number of contributions
-// that share its weight.
-glm::vec3 PathFilm::clamped_direct(const glm::vec3 &light, float parts) {
+// that share its weight; in_picture: the removed light counts.
+glm::vec3 PathFilm::clamped_direct(const glm::vec3 &light, float parts, bool in_picture) {
   const float level = parts * mean(glm::abs(light)), limit = settings_.clamp_direct;
   if (!(limit > 0.0f) || !(level > limit))
     return light;
   const glm::vec3 kept = light * (limit / level);
-  Energy::remove(energy.clipped_direct, luminance(light - kept));
+  if (in_picture)
+    Energy::remove(energy.clipped_direct, luminance(light - kept));
   return kept;
 }
 
@@ -90,7 +114,9 @@ void PathFilm::add(const Path &path, const glm::vec3 &found, bool environment, u
   SampleResult &result = results_[path.sample];
   // Light that was scattered at most once is direct.
   const bool indirect = path.scatterings > 1;
-  const glm::vec3 radiance = indirect ? found : clamped_direct(found, float(path.sharers));
+  const glm::vec3 radiance = indirect ? found : clamped_direct(found, float(path.sharers), !path.of_catchers);
+  if (path.of_catchers)
+    return catchers_.add(path.sample, sum(path), radiance, indirect, *extras_);
   // A transparent film leaves the environment behind it to the environment's pass: picture and guides have none of it.
   const bool hidden = environment && settings_.film_transparent && path.in_view;
   if (wants_guides(path) && !hidden)
@@ -105,15 +131,18 @@ void PathFilm::add(const Path &path, const glm::vec3 &found, bool environment, u
       result.radiance += seen;
     }
     passes.add_seen(result, seen, environment);
-    add_to_group(path.sample, group, seen, false);
+    if (!path.caught)
+      add_to_group(path.sample, group, seen, false);
     return;
   }
-  add_to_group(path.sample, group, radiance, indirect);
+  if (!path.caught)
+    add_to_group(path.sample, group, radiance, indirect);
   if (indirect)
     indirect_[sum(path)] += radiance;
   else
     result.radiance += radiance;
-  passes.add(result, radiance, shares_[sum(path)].of, indirect);
+  if (!path.caught)
+    passes.add(result, radiance, shares_[sum(path)].of, indirect);
 }
 
 void PathFilm::add_lit(const WaitingLight &waiting, const glm::vec3 &light) {
@@ -124,7 +153,9 @@ void PathFilm::add_lit(const WaitingLight &waiting, const glm::vec3 &light) {
   }
   if (waiting.ghost != Ghost::None)
     return add_removed(waiting.ghost, light);
-  const glm::vec3 kept = waiting.indirect ? light : clamped_direct(light, waiting.parts);
+  const glm::vec3 kept = waiting.indirect ? light : clamped_direct(light, waiting.parts, !waiting.of_catchers);
+  if (waiting.of_catchers)
+    return catchers_.add(waiting.target, waiting.target * sums() + waiting.sum, kept, waiting.indirect, *extras_);
   add_to_group(waiting.target, waiting.group, kept, waiting.indirect);
   if (waiting.indirect)
     indirect_[waiting.target * sums() + waiting.sum] += kept;
@@ -137,7 +168,7 @@ void PathFilm::add_lit(const WaitingLight &waiting, const glm::vec3 &light) {
 uint32_t PathFilm::record(SurfaceStage &surfaces, std::span<const Path> paths, const size_t (&number)[kBlockLanes],
                           uint32_t ends, uint32_t nothing) {
   for (uint32_t lane = 0; trace_ && lane < surfaces.count(); ++lane)
-    if (paths[number[lane]].ghost == Ghost::None)
+    if (paths[number[lane]].ghost == Ghost::None && !paths[number[lane]].of_catchers)
       trace(paths[number[lane]], surfaces.surface(lane), surfaces.hit(lane).t);
   if (only_combined_)
     return 0;
@@ -146,7 +177,7 @@ uint32_t PathFilm::record(SurfaceStage &surfaces, std::span<const Path> paths, c
   uint32_t seen = 0, guiding = 0, asked = 0;
   for (uint32_t lane = 0; lane < surfaces.count(); ++lane) {
     const Path &path = paths[number[lane]];
-    seen |= uint32_t{path.in_view} << lane;
+    seen |= uint32_t{path.in_view && !path.of_catchers} << lane;
     guiding |= uint32_t(wants_guides(path) && !path.last) << lane;
   }
   seen &= ~(ends | nothing);
@@ -215,7 +246,7 @@ void PathFilm::pass_absent(Path &path, const Ray &ray, HitStage &stage, size_t n
     // Passes may also record a surface of low opacity.
     if (trace_ || awaits_surface(path)) {
       const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, met);
-      if (trace_ && path.ghost == Ghost::None)
+      if (trace_ && path.ghost == Ghost::None && !path.of_catchers)
         trace(path, surface, met.t);
       if (awaits_surface(path)) {
         const double unit = glm::length(ray.d);
@@ -244,6 +275,8 @@ void PathFilm::pass_absent(Path &path, const Ray &ray, HitStage &stage, size_t n
 }
 
 bool PathFilm::miss(const Path &path) {
+  if (path.of_catchers)
+    return !path.in_view || !settings_.film_transparent;
   SampleResult &result = results_[path.sample];
   if (awaits_surface(path))
     forget_place(result);
@@ -258,7 +291,9 @@ bool PathFilm::miss(const Path &path) {
 
 void PathFilm::fill(WaitingLight &light, const Path &path, const Floats (&share)[2][3], uint32_t lane, uint32_t chosen) const {
   light.target = path.sample;
-  light.group = layout_.groups > 0 ? scene_.lights.group_of(scene_.geometry, chosen) : 0;
+  light.group = layout_.groups > 0 && !path.caught ? scene_.lights.group_of(scene_.geometry, chosen) : 0;
+  light.has_passes = !path.caught;
+  light.of_catchers = path.of_catchers;
   light.sum = sum_of(path);
   light.indirect = path.scatterings > 0;
   light.ghost = path.ghost;
@@ -269,7 +304,9 @@ void PathFilm::fill(WaitingLight &light, const Path &path, const Floats (&share)
 WaitingLight PathFilm::waiting(const Path &path, uint32_t group) const {
   WaitingLight light;
   light.target = path.sample;
-  light.group = group;
+  light.group = path.caught ? 0 : group;
+  light.has_passes = !path.caught;
+  light.of_catchers = path.of_catchers;
   light.sum = sum_of(path);
   light.indirect = path.scatterings > 1;
   light.ghost = path.ghost;
@@ -280,7 +317,7 @@ WaitingLight PathFilm::waiting(const Path &path, uint32_t group) const {
 }
 
 void PathFilm::set_shares(const Path &path, const Path &next, const Floats (&share)[2][3], uint32_t lane) {
-  if (next.in_view || !passes.components())
+  if (next.in_view || path.of_catchers || !passes.components())
     return;
   const Shares before = shares_[sum(path)];
   for (int component = 0; component < 2; ++component)

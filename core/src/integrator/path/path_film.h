@@ -4,6 +4,7 @@
 
 #include "integrator/aov/first_surface.h"
 #include "integrator/aov/surface_extras.h"
+#include "integrator/path/catcher_film.h"
 #include "integrator/path/path_state.h"
 #include "integrator/sample.h"
 #include "integrator/stages/hit.h"
@@ -20,7 +21,7 @@ namespace lancer {
 class PathFilm {
 public:
   PathFilm(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
-      : passes(settings), scene_(scene), camera_(camera), settings_(settings), layout_(settings.extras()),
+      : passes(settings), scene_(scene), camera_(camera), settings_(settings), layout_(settings.extras()), catchers_(layout_),
         shader_(scene, &camera), cone_(camera), sky_values_(scene.world.program.value_count()) {}
   void set_splits(const Splits &splits) { settings_.splits = splits; }
 
@@ -53,6 +54,19 @@ public:
   WaitingLight waiting(const Path &path, uint32_t group) const;
   // Adds the part of a light sample's contribution that its shadow ray transmits.
   void add_lit(const WaitingLight &waiting, const glm::vec3 &light);
+  // Whether a path that hits this instance goes on as two, see CatcherFilm.
+  bool splits_at(const Path &path, const Instance &instance) const {
+    return catchers_.keeps() && instance.catcher && !instance.holdout && path.in_view && !path.caught && !path.of_catchers &&
+           path.ghost == Ghost::None;
+  }
+  // Keeps the picture without the shadow catcher that a path meets.
+  void meet_catcher(const Path &path) {
+    catchers_.meet(path.sample, results_[path.sample], gathered(path.sample), mean(path.beta), *extras_);
+  }
+  // Adds the environment behind a shadow catcher to its pass alone.
+  void add_behind(const Path &path, const glm::vec3 &radiance) {
+    passes.add_seen(results_[path.sample], path.beta * radiance, true);
+  }
   // Subtracts a share from the alpha of a sample.
   void cut(const Path &path, float share) { results_[path.sample].alpha -= share; }
 
@@ -121,6 +135,9 @@ private:
   glm::vec3 before_splitting(uint32_t sample) const {
     return sums() > 1 ? indirect_[(sample + 1) * sums() - 1] : glm::vec3(0.0f);
   }
+  // Sums of indirect light of a sample: one for each of its paths, and the light found before a split.
+  using IndirectSums = std::span<glm::vec3>;
+  IndirectSums indirect(uint32_t sample) { return IndirectSums(indirect_).subspan(size_t(sample) * sums(), sums()); }
   void clamp(uint32_t sample);
   // Adds light to its group. Where clamping is requested, indirect light waits for it.
   void add_to_group(uint32_t sample, uint32_t group, const glm::vec3 &light, bool indirect) {
@@ -128,7 +145,7 @@ private:
     to.add_light(layout_, sample, group, light);
   }
   void add_indirect_groups(uint32_t sample, const glm::vec3 &factor);
-  glm::vec3 clamped_direct(const glm::vec3 &light, float parts);
+  glm::vec3 clamped_direct(const glm::vec3 &light, float parts, bool in_picture);
   void add_removed(Ghost ghost, const glm::vec3 &light);
   void record(const Path &path, const Surface &surface, const MaterialView &material, const glm::vec3 &normal,
               const glm::vec3 &opacity, double t);
@@ -151,6 +168,7 @@ private:
   const Camera &camera_;
   IntegratorSettings settings_;
   ExtraLayout layout_;
+  CatcherFilm catchers_;
   Shader shader_; // of absent surfaces
   PixelCone cone_;
   Shaded absent_;

@@ -58,6 +58,9 @@ void PathIntegrator::add_ambient(uint32_t lanes) {
   ambient_.look(lanes, surface_, scatter_.next(), numbers_.numbers);
   each_lane(lanes, [&](uint32_t lane) {
     const Path &path = path_of(lane);
+    // As in Cycles, shadow catchers alone have no ambient light.
+    if (path.of_catchers)
+      return;
     const glm::vec3 matt = get(surface_.means().shown[size_t(Component::Diffuse)], lane);
     const glm::vec3 light = path.beta * surface_.opacity(lane) * matt * settings_.ambient;
     if (light == glm::vec3(0.0f))

@@ -35,6 +35,8 @@ struct Path {
   bool after_diffuse = false; // a diffuse lobe has scattered the path
   Ghost ghost = Ghost::None;  // the light goes into no film
   bool fresh = false;         // a ghost that has not been scattered yet
+  bool caught = false;        // the camera sees a shadow catcher here: the rest of the path is in no pass of light
+  bool of_catchers = false;   // the path goes among shadow catchers alone
   float least_pdf = std::numeric_limits<float>::infinity(); // least density of a scattering, single directions apart
   double length = 0.0;                                      // of the whole path, normalised units; set by PATH
   // Width of a pixel where the ray starts, and its growth along the ray, as in Cycles; set by PATH where images have mipmaps.
@@ -71,6 +73,12 @@ struct Path {
     leads = in_view = false;
     beta *= weight;
   }
+  // Sends the path among shadow catchers alone.
+  void leave_others() {
+    of_catchers = true;
+    leads = false;
+    kinds = among_catchers(kinds);
+  }
   void count_crossings(uint32_t count, uint32_t limit) {
     crossings += count;
     passed_through += count;
@@ -91,7 +99,7 @@ struct Path {
     if (!singular)
       least_pdf = std::min(least_pdf, float(pdf));
     beta = throughput;
-    kinds = kind;
+    kinds = of_catchers ? among_catchers(kind) : kind;
     crossings = 0;
     ++scatterings;
     leaving = false;
@@ -101,7 +109,7 @@ struct Path {
   // Sends the path below the surface. A walk is no scattering that counts.
   void enter(const glm::vec3 &throughput, bool dimmed_exit) {
     beta = throughput;
-    kinds &= ~uint32_t(RayKind::Camera);
+    kinds &= ~kCameraKinds;
     story.kinds &= uint16_t(~uint32_t(RayKind::Camera));
     ++entries;
     leaving = true;

@@ -11,6 +11,7 @@ struct WaitingLight {
   uint32_t group = 0;           // of the light, see Extras::add_light()
   bool indirect = false;        // scattered more than once
   Ghost ghost = Ghost::None;    // of the path
+  bool of_catchers = false;     // of the path
   float parts = 1.0f;           // number of contributions that share the weight of this one
   bool has_passes = true;       // the light is in passes beside the picture
   bool occlusion = false;       // no light: the pass of ambient occlusion

@@ -53,7 +53,7 @@ uint32_t SurfaceStage::add(const Ray &ray, const Hit &hit, const MaterialView &m
   materials_.material[lane] = &material;
   materials_.through[lane] = material.is_transparent() ? mean(transmittance_[lane]) : 0.0f;
   materials_.ends |= uint32_t{ends} << lane;
-  materials_.seen_by_camera |= uint32_t{(ray.kinds & RayKind::Camera) != 0} << lane;
+  materials_.seen_by_camera |= uint32_t{(ray.kinds & kCameraKinds) != 0} << lane;
   hits_.used |= bit;
   hits_.placement[lane] = instance.placement();
   surfaces_.time[lane] = ray.time;

@@ -1,0 +1,28 @@
+"""Shadow catchers: objects that stand for those in footage, of which the picture shows the shadows alone."""
+
+import bpy
+import numpy as np
+
+from ..bindings.enums import Catchers, InstanceFlag, Integrator, PassKind
+from ..bindings.numbered_pass import NumberedPass
+
+SOURCE = NumberedPass(PassKind.SHADOW_CATCHER)
+# Find out once: a failing getattr per object takes as long as all other reads.
+_HAS_CATCHER = "is_shadow_catcher" in bpy.types.Object.bl_rna.properties
+
+
+def is_catcher(thing):
+    return _HAS_CATCHER and thing.is_shadow_catcher
+
+
+def has_pass(view_layer):
+    """Whether a view layer asks for the pass. The switch belongs to Cycles, an add-on that may be disabled."""
+    return getattr(getattr(view_layer, "cycles", None), "use_pass_shadow_catcher", False)
+
+
+def catchers_of(instances, view_layer, integrator):
+    """Return Settings.catchers for the objects of an InstanceTable: with the pass, Combined leaves them out."""
+    if has_pass(view_layer):
+        return Catchers.APART
+    has_any = integrator == Integrator.PATH and np.any(instances.flags & int(InstanceFlag.CATCHER))
+    return Catchers.SHADOWS if has_any else Catchers.OBJECTS
