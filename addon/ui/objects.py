@@ -128,6 +128,9 @@ class LANCER_OBJECT_PT_ray_visibility(LancerPanel, bpy.types.Panel):
             # Lamps are no occluders.
             if not (ray == "shadow" and thing.type == "LIGHT"):
                 column.prop(thing, f"visible_{ray}", text=ray.capitalize())
+        column = self._column().column(heading="Mask")
+        column.active = context.scene.lancer.integrator == "PATH"
+        setting(column, "is_shadow_catcher", thing)
 
 
 class LancerLinkingPanel(LancerPanel):
