@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <mutex>
@@ -23,10 +24,10 @@ namespace {
 
 // Meshes with fewer triangles get one thread: starting others takes longer than they save.
 constexpr size_t kLarge = 65536;
+// How long a thread waits for the next mesh: to start another one takes as long as the tree of a small mesh.
+constexpr std::chrono::milliseconds kPatience{20};
 
 void make_tree(const Mesh &mesh, uint32_t threads, const std::atomic<bool> &cancel) {
-  if (mesh.triangles.size() <= kMostUnfolded)
-    return;
   const BuildContext context{mesh.triangles.size() < kLarge ? 1 : threads, &cancel};
   tree_of(mesh, &mesh, mesh_frame(bounds_of(mesh, &mesh)->faces), context);
 }
@@ -48,16 +49,19 @@ class Queue {
 public:
   // Waits for the thread, when the process ends or unloads the library.
   ~Queue() {
-    cancel_ = true;
     std::unique_lock lock(mutex_);
+    cancel_ = true;
+    wished_.notify_all();
     ended_.wait(lock, [&] { return !works_; });
   }
 
   void add(const Wish &wish) {
     const std::lock_guard lock(mutex_);
     waiting_.push_back(wish);
-    if (works_)
+    if (works_) {
+      wished_.notify_one();
       return;
+    }
     try {
       std::thread([this] { work(); }).detach();
       works_ = true;
@@ -85,8 +89,8 @@ private:
 
   // Returns null if the thread must end.
   std::shared_ptr<const Mesh> next(uint32_t &threads) {
-    const std::lock_guard lock(mutex_);
-    while (!waiting_.empty() && !cancel_) {
+    std::unique_lock lock(mutex_);
+    while (wished_.wait_for(lock, kPatience, [&] { return !waiting_.empty() || cancel_; }) && !cancel_) {
       const std::shared_ptr<const Mesh> mesh = waiting_.front().mesh.lock();
       threads = waiting_.front().threads;
       waiting_.pop_front();
@@ -99,7 +103,7 @@ private:
   }
 
   std::mutex mutex_;
-  std::condition_variable ended_;
+  std::condition_variable wished_, ended_;
   std::deque<Wish> waiting_;
   std::atomic<bool> cancel_{false};
   bool works_ = false;
@@ -108,6 +112,8 @@ private:
 } // namespace
 
 void prepare(const std::shared_ptr<const Mesh> &mesh, uint32_t threads) {
+  if (mesh->triangles.size() <= kMostUnfolded)
+    return;
   static Queue queue;
   queue.add({mesh, threads});
 }
