@@ -22,12 +22,21 @@ void MatteSums::gather(const MattesBySample &mattes, uint32_t kind, size_t first
   ends.resize(pixels);
   ids.clear();
   shares.clear();
+  ids.reserve(pixels);
+  shares.reserve(pixels);
   for (uint32_t pixel = 0; pixel < pixels; ++pixel) {
     const auto begin = ptrdiff_t(ids.size());
-    for (const MatteShare &matte : mattes.of(first + pixel)) {
+    const std::span<const MatteShare> met = mattes.of(first + pixel);
+    for (const MatteShare &matte : met) {
       const uint32_t id = matte.ids[kind];
       if (id == 0)
         continue;
+      // Most samples meet one surface.
+      if (met.size() == 1) {
+        ids.push_back(id);
+        shares.push_back(double(matte.share));
+        break;
+      }
       const auto at = std::lower_bound(ids.begin() + begin, ids.end(), id);
       const auto share = shares.begin() + (at - ids.begin());
       if (at != ids.end() && *at == id) {
@@ -37,7 +46,8 @@ void MatteSums::gather(const MattesBySample &mattes, uint32_t kind, size_t first
         ids.insert(at, id);
       }
     }
-    limit(size_t(begin), 0);
+    if (met.size() > LANCER_MOST_MATTES)
+      limit(size_t(begin), 0);
     ends[pixel] = uint32_t(ids.size());
   }
 }
