@@ -11,9 +11,11 @@ import numpy as np
 from ..bindings.enums import InstanceKind
 from ..bindings.snapshot import InstanceMotion
 from ..messages.messages import Messages
+from ..messages.severity import Severity
 from .camera import export_camera
 from .flat import is_singular
 from .mesh import read_shape, shown_mesh
+from .settings import world_of
 from .shutter import as_motion, key_count, relative_times, reshapes
 
 _NUMBERS = 8  # of an entry's persistent id
@@ -129,6 +131,7 @@ class MotionReader:
             if all(camera == cameras[0] for camera in cameras):
                 cameras = ()
         self._tell_lamps(messages)
+        self._tell_world(messages)
         table = dataclasses.replace(snapshot.instances, motions=tuple(self._motions(messages)))
         meshes = self._meshes(snapshot.meshes, messages)
         return snapshot.replaced(meshes=meshes, instances=table, motion=as_motion(self._shutter, cameras))
@@ -144,6 +147,14 @@ class MotionReader:
             moving |= {name for name, is_moving in zip(self._lamps.values(), moves, strict=True) if is_moving}
         for name in sorted(moving):
             messages.add(f"light '{name}': moves within the shutter, as in Cycles it shines from its place in the middle of it")
+
+    def _tell_world(self, messages):
+        """Name a world with animated nodes, which Cycles reads once."""
+        world = world_of(self._depsgraph)
+        animation = world.node_tree.animation_data if world is not None and world.node_tree is not None else None
+        if animation is not None and (animation.action is not None or len(animation.drivers)):
+            text = "its nodes are animated, as in Cycles it shines as in the middle of the shutter"
+            messages.add(f"world '{world.name}': {text}", severity=Severity.HINT)
 
     def _motions(self, messages):
         for count in np.unique(self._counts).tolist():

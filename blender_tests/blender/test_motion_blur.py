@@ -37,6 +37,8 @@ def test_keys_of_objects_and_meshes(which, tmp_path):
     assert told == ["mesh 'Grows': the number of its vertices changes within the shutter, as in Cycles it is not blurred then"]
     lamps = [line for line in got["lines"] if line.startswith("light")]
     assert lamps == ["light 'Lantern': moves within the shutter, as in Cycles it shines from its place in the middle of it"]
+    worlds = [line for line in got["lines"] if line.startswith("world")]
+    assert worlds == ["world 'World': its nodes are animated, as in Cycles it shines as in the middle of the shutter"]
     flat = [line for line in got["lines"] if "scale is 0" in line]
     assert flat == ["object 'Turns over': a scale is 0 within the shutter; its motion is not blurred"]
 

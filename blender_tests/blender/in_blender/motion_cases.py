@@ -144,6 +144,9 @@ def keys():
     lamp = stage.light(location=(1, 1, 3))
     lamp.name = "Lantern"
     _slide(lamp)
+    stage.sky()
+    strength = scene.world.node_tree.nodes["Background"].inputs["Strength"]
+    strength.keyframe_insert("default_value", frame=1)
     scene.frame_set(2)
     with _Watch() as watch:
         bpy.ops.render.render()
