@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from tiny_scenes import lambert, look_at, move, plane, quad, rotate_y, scene
 
-from addon.bindings.abi import BakeView, LancerError, LightKind, LobeKind, Pass
+from addon.bindings.abi import BakeView, Catchers, InstanceFlag, LancerError, LightKind, LobeKind, Pass, PassKind
+from addon.bindings.numbered_pass import NumberedPass
 from addon.bindings.session import Scene, Session
-from addon.bindings.snapshot import Camera, Instance, Light, Lobe, Material
+from addon.bindings.snapshot import Camera, Instance, InstanceTable, Light, Lobe, Material
 from addon.bindings.texels import DTYPE, EMPTY, Texels
 
 SIZE = 8
@@ -37,7 +38,8 @@ def places(size=SIZE):
 
 
 def bake(snapshot, asked, *passes, samples=None, threads=1):
-    settings = dataclasses.replace(snapshot.settings, passes=(Pass.COMBINED, *passes), threads=threads)
+    plain = (each for each in passes if isinstance(each, Pass))
+    settings = dataclasses.replace(snapshot.settings, passes=(Pass.COMBINED, *plain), threads=threads)
     height, width = asked.rows.shape
     camera = dataclasses.replace(snapshot.camera, width=width, height=height, region_width=width, region_height=height)
     with Scene.upload(snapshot) as uploaded, Session.bake(uploaded, camera, settings, asked) as session:
@@ -156,3 +158,17 @@ def test_what_fits_no_picture_is_refused(change, says):
 
 def test_an_instance_that_is_missing_leaves_all_texels_empty():
     assert bake(lit_quad(), texels(instance=5)).max() == 0.0
+
+
+def test_shadows_of_texels():
+    """A texel of a shadow catcher tells the share of its light that other objects leave: none or all of a point lamp's."""
+    blocker = Instance(mesh=0, matrix=move(x=1.0, z=1.0), materials=(0,))
+    shown = lit_quad(catchers=Catchers.APART)
+    table = InstanceTable.build([Instance(mesh=0, materials=(0,), flags=InstanceFlag.CATCHER), blocker])
+    asked = texels()
+    asked.rows["triangle"][0] = EMPTY
+    factor, _ = bake(dataclasses.replace(shown, instances=table), asked, NumberedPass(PassKind.SHADOW_CATCHER))
+    # The blocker at half of the lamp's height covers x > 0 there, and so the right half of the quad.
+    dark = np.broadcast_to(places()[0] > 0.0, (SIZE, SIZE)).copy()
+    dark[0] = False
+    assert (factor[dark] == 0.0).all() and (factor[~dark] == 1.0).all()

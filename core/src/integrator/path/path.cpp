@@ -56,7 +56,7 @@ void PathIntegrator::start(std::span<const SampleAddress> addresses, std::span<S
   for (size_t i = 0; i < queue_.rays.size(); ++i)
     queue_.from[i].p = queue_.rays[i].o;
   for (size_t i = 0; i < queue_.rays.size() && scene_.features & kFeatureMipmaps; ++i) {
-    queue_.paths[i].width = at_texels_ ? texels_->width(i) : float(width_at_eye_);
+    queue_.paths[i].width = at_texels_ ? texels_->width(queue_.paths[i].sample) : float(width_at_eye_);
     queue_.paths[i].spread = at_texels_ ? 0.0f : float(spread_at_eye_(queue_.rays[i].d));
   }
   counts_.camera += queue_.paths.size();
@@ -264,8 +264,8 @@ void PathIntegrator::shade_block() {
         const double unit = surface_.surfaces().length[lane], t = surface_.hit(lane).t;
         View view = surface_.view(lane, path.length + t * unit,
                                   path.light_path((t - surface_.ray(lane).tmin) * unit / scene_.normalisation.scale, t * unit));
-        if (at_texels_)
-          view.footprint = texels_->width(path_[lane]);
+        if (at_texels_ && !path.leaving)
+          view.footprint = texels_->width(path.sample);
         view.pixel = path.sampler.pixel();
         view.sample = path.sampler.sample();
         view.dimension = path.nodes_dimension();

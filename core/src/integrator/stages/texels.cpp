@@ -70,7 +70,6 @@ Hit TexelStage::aim(const Texel &texel, const Sampler &sampler, Ray &ray) {
   ray.kinds = RayKind::Camera;
   ray.d = glm::dvec3(0.0, 0.0, -1.0);
   const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hit);
-  widths_.push_back(width_of(texel));
   if (bake_.view == BakeView::Sky) {
     ray.o = scene_.normalisation.to_normalised(glm::dvec3(0.0));
     const glm::dvec3 way = surface.p - ray.o;

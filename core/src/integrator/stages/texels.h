@@ -28,7 +28,7 @@ public:
   void start(std::span<const SampleAddress> addresses, bool with_light, std::span<SampleResult> results, std::vector<Hit> &hits,
              Begin &&begin) {
     hits.clear();
-    widths_.clear();
+    widths_.assign(addresses.size(), 0.0f);
     for (size_t i = 0; i < addresses.size(); ++i) {
       const SampleAddress &address = addresses[i];
       std::construct_at(&results[i], with_light);
@@ -39,10 +39,11 @@ public:
       const Sampler sampler(seed_, camera_.x + address.x, camera_.y + address.y, address.sample);
       Ray &ray = begin(uint32_t(i), sampler);
       hits.push_back(aim(texel, sampler, ray));
+      widths_[i] = width_of(texel);
     }
   }
-  // Returns the radius of the texel of a ray of the last start(), normalised units.
-  float width(size_t ray) const { return widths_[ray]; }
+  // Returns the radius of the texel of a sample of the last start(), normalised units.
+  float width(uint32_t sample) const { return widths_[sample]; }
 
 private:
   Hit aim(const Texel &texel, const Sampler &sampler, Ray &ray);
@@ -53,7 +54,7 @@ private:
   const Camera &camera_;
   const Bake &bake_;
   uint32_t seed_;
-  std::vector<float> widths_;
+  std::vector<float> widths_; // by sample
 };
 
 } // namespace lancer
