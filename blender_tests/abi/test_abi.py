@@ -42,7 +42,7 @@ def test_wrong_numbers_in_instances(raw):
     refused(raw.add_instances(scene, [raw.instance(first_slot=2**32 - 1, slot_count=2)]), "Thing", "slot")
     refused(raw.add_instances(scene, [raw.instance(name=6)]), "name")
     refused(raw.add_instances(scene, [raw.instance(hidden_from=128)]), "Thing", "hidden_from", "128")
-    refused(raw.add_instances(scene, [raw.instance(flags=2)]), "Thing", "flags", "2")
+    refused(raw.add_instances(scene, [raw.instance(flags=4)]), "Thing", "flags", "4")
     refused(raw.add_instances(scene, [raw.instance()], names=b"endless"), "name")
 
 

@@ -90,6 +90,7 @@ def test_every_call_with_a_handle_is_tried_here(raw):
     known = {
         "lancer_scene_create",
         "lancer_combine_denoised",
+        "lancer_compose_catchers",
         "lancer_probe_microfacet",
         "lancer_probe_sampler",
         "lancer_probe_filter",

@@ -165,3 +165,9 @@ def test_passes_that_are_not_kept_are_refused():
         for which in (CATCHER, MATTE):
             with pytest.raises(Exception, match="not stored"):
                 session.read(which)
+
+
+def test_parts_of_other_shapes_are_refused():
+    parts = shadowed.Parts(Catchers.SHADOWS, np.zeros((2, 3, 4)), np.zeros((2, 3, 4)), None)
+    with pytest.raises(Exception, match="parts of shapes"):
+        shadowed.compose(parts)
