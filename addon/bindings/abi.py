@@ -57,6 +57,7 @@ _CALLS = {
     "lancer_scene_set_object_infos": (_u64, _u32, _Array),
     "lancer_scene_add_object_attribute": (_u64, c_char_p, _u32, _Array),
     "lancer_scene_move_instances": (_u64, _u32, _Array, _u32, _Array),
+    "lancer_scene_set_vectors": (_u64, _u32, _Array, _Array),
     "lancer_scene_set_motion": (_u64, POINTER(Motion)),
     "lancer_scene_add_image": (_u64, POINTER(Image)),
     "lancer_make_mipmaps": (POINTER(Image), _Array),

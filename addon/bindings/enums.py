@@ -615,10 +615,11 @@ class Pass(IntEnum):
     NORMAL_HALVES = 26
     SPECULAR_ALBEDO = 27
     ROUGHNESS = 28
+    VECTOR = 29
 
     @property
     def channels(self):
-        return (4, 1, 3, 3, 3, 1, 1, 3, 1, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 1, 1, 3, 3, 3, 3, 1)[self]
+        return (4, 1, 3, 3, 3, 1, 1, 3, 1, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 1, 1, 3, 3, 3, 3, 1, 4)[self]
 
 
 class PassKind(IntEnum):

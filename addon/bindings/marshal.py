@@ -123,6 +123,11 @@ def instance_motion(motion):
     return len(motion.instances), _address(motion.instances), motion.matrices.shape[1], _address(motion.matrices)
 
 
+def instance_vectors(vectors):
+    """Return the arguments of lancer_scene_set_vectors after the scene."""
+    return len(vectors.instances), _address(vectors.instances), _address(vectors.matrices)
+
+
 def motion(m):
     """Return the abi.Motion of a Motion; None is a scene that is shown as it stands."""
     if m is None:

@@ -19,6 +19,7 @@ NAMES = {
     Pass.POSITION: PassName("Position", "Position", "XYZ"),
     Pass.NORMAL: PassName("Normal", "Normal", "XYZ"),
     Pass.UV: PassName("UV", "UV", "UVA"),
+    Pass.VECTOR: PassName("Vector", "Vector", "XYZW"),
     Pass.OBJECT_INDEX: PassName("Object Index", "IndexOB", "X"),
     Pass.MATERIAL_INDEX: PassName("Material Index", "IndexMA", "X"),
     Pass.DIFFUSE_DIRECT: PassName("Diffuse Direct", "DiffDir", "RGB"),

@@ -125,6 +125,8 @@ class Scene(Handle, SceneProbes):
             self._check(self.library.lancer_scene_add_object_attribute(self.handle, *marshal.object_attribute(attribute)))
         for motion in table.motions:
             self._check(self.library.lancer_scene_move_instances(self.handle, *marshal.instance_motion(motion)))
+        if table.vectors is not None:
+            self._check(self.library.lancer_scene_set_vectors(self.handle, *marshal.instance_vectors(table.vectors)))
 
     def likeness(self, snapshot):
         """Return how many meshes of a snapshot may be those of this scene, by name and size."""

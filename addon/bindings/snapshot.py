@@ -40,6 +40,7 @@ from .shading import (  # noqa: F401 - all records have one address
 from .structs import SETTINGS
 
 _IDENTITY = np.eye(4)[:3]
+_ZEROS = np.zeros((3, 4))
 
 
 @register
@@ -71,6 +72,7 @@ class MeshData(Record):
     attributes: tuple[MeshAttribute, ...] = ()
     moved_positions: np.ndarray | None = None  # (K, V, 3) of a mesh that changes its shape, at the keys of a Motion
     moved_normals: np.ndarray | None = None  # (K,) + those of normals; None: the normals keep
+    vector_positions: np.ndarray | None = None  # (2, V, 3) one frame before and one after, for Pass.VECTOR
 
     def __post_init__(self):
         what = f"mesh '{self.name}': "
@@ -94,6 +96,9 @@ class MeshData(Record):
         if self.moved_normals is not None:
             shape = (len(self.moved_positions), *np.shape(self.normals))
             self.set("moved_normals", array(self.moved_normals, np.float32, shape, what + "moved_normals"))
+        if self.vector_positions is not None:
+            shape = (2, vertices, 3)
+            self.set("vector_positions", array(self.vector_positions, np.float32, shape, what + "vector_positions"))
         self.set("attributes", tuple(self.attributes))
         rows = {Domain.VERTEX: vertices, Domain.FACE: count, Domain.CORNER: 3 * count}
         for attribute in self.attributes:
@@ -156,6 +161,20 @@ class InstanceMotion(Record):
         self.set("matrices", array(self.matrices, np.float64, shape, "matrices of moving instances"))
 
 
+@register
+@dataclass(frozen=True, eq=False)
+class InstanceVectors(Record):
+    """Instances that move from frame to frame: their numbers (n,), and their matrices (n, 2, 3, 4) before and after."""
+
+    instances: np.ndarray = field(default_factory=lambda: np.empty(0, np.uint32))
+    matrices: np.ndarray = field(default_factory=lambda: np.empty((0, 2, 3, 4)))
+
+    def __post_init__(self):
+        self.set("instances", array(self.instances, np.uint32, (None,), "instances with vectors"))
+        shape = (len(self.instances), 2, 3, 4)
+        self.set("matrices", array(self.matrices, np.float64, shape, "matrices of instances with vectors"))
+
+
 _INSTANCE_COLUMNS = (
     "kinds", "meshes", "first_slots", "slot_counts", "object_indices", "shadings", "name_indices", "hidden_from", "flags",
 )  # fmt: skip
@@ -189,6 +208,7 @@ class InstanceTable(Record):
     asset_names: tuple[str, ...] = ()  # of which asset_mattes has the ids
     slots: np.ndarray = field(default_factory=lambda: np.empty(0, np.uint32))
     motions: tuple[InstanceMotion, ...] = ()  # one for each number of keys
+    vectors: InstanceVectors | None = None  # for Pass.VECTOR; None: all stand still
 
     def __post_init__(self):
         count = len(self.matrices)
@@ -215,7 +235,7 @@ class InstanceTable(Record):
         self.set("asset_names", tuple(self.asset_names))
         self.set("attributes", tuple(self.attributes))
         self.set("motions", tuple(self.motions))
-        for motion in self.motions:
+        for motion in (*self.motions, *([] if self.vectors is None else [self.vectors])):
             if len(motion.instances) and int(motion.instances.max()) >= count:
                 raise ValueError(f"moving instance {int(motion.instances.max())} >= {count} instances")
         for attribute in self.attributes:
@@ -325,10 +345,16 @@ class Camera(Record):
     convergence_distance: float = 0.0
     pole_merge_from: float = 0.0
     pole_merge_to: float = 0.0
+    # One frame before and one after, for Pass.VECTOR; a matrix of zeros: those of the picture
+    matrix_before: np.ndarray = field(default_factory=lambda: _ZEROS)
+    matrix_after: np.ndarray = field(default_factory=lambda: _ZEROS)
+    window_before: tuple = (0.0,) * 4
+    window_after: tuple = (0.0,) * 4
 
     def __post_init__(self):
-        self.set("matrix", array(np.asarray(self.matrix, float)[:3], np.float64, (3, 4), "camera matrix"))
-        self.vectors(window=4, panorama=8)
+        for name in ("matrix", "matrix_before", "matrix_after"):
+            self.set(name, array(np.asarray(getattr(self, name), float)[:3], np.float64, (3, 4), f"camera {name}"))
+        self.vectors(window=4, panorama=8, window_before=4, window_after=4)
         if self.region_width is None:
             self.set("region_width", self.width - self.x)
         if self.region_height is None:

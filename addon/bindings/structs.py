@@ -41,6 +41,7 @@ class Mesh(Structure):
         ("attribute_count", c_uint32),
         ("moved_positions", Array),
         ("moved_normals", Array),
+        ("vector_positions", Array),
         ("key_count", c_uint32),
         ("reserved", c_uint32),
     ]
@@ -305,6 +306,10 @@ class Camera(Structure):
         ("convergence_distance", c_double),
         ("pole_merge_from", c_double),
         ("pole_merge_to", c_double),
+        ("matrix_before", c_double * 12),
+        ("matrix_after", c_double * 12),
+        ("window_before", c_double * 4),
+        ("window_after", c_double * 4),
     ]
 
 
@@ -360,6 +365,7 @@ class Settings(Structure):
         ("mist_depth", c_float),
         ("mist_falloff", c_float),
         ("blended_features", c_uint32),
+        ("sky_vectors", c_uint32),
         ("features", c_uint32),
         ("passes", c_uint32),
         ("mattes", c_uint32),
@@ -718,6 +724,7 @@ SETTINGS = {
     "mist_depth": ("amount", 25.0),
     "mist_falloff": ("amount", 2.0),
     "blended_features": ("switch", False),
+    "sky_vectors": ("switch", False),
     "features": ("choice", 0),
     "passes": ("bits", 1),
     "mattes": ("bits", 0),

@@ -27,6 +27,7 @@ _TABLE = (
     ("mist", Pass.MIST, "VALUE"),
     ("position", Pass.POSITION, "VECTOR"),
     ("normal", Pass.NORMAL, "VECTOR"),
+    ("vector", Pass.VECTOR, "VECTOR"),
     ("uv", Pass.UV, "VECTOR"),
     ("object_index", Pass.OBJECT_INDEX, "VALUE"),
     ("material_index", Pass.MATERIAL_INDEX, "VALUE"),

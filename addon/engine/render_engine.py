@@ -212,17 +212,19 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         begin = self._ahead.mesh if many_machines.wanted(scene) is None and scene.lancer.accelerator == "BVH" else None
         self._following = self._following or kept_pictures.Following()
         kept, parts = kept_pictures.of(scene), self._following.take(depsgraph, len(self.get_result().layers))
-        shutter = shutter_of(scene, wants_vectors=False)
+        sources = passes.sources(wanted)
+        shutter = shutter_of(scene, view_layer, sources)
         if shutter is not None:
             # The updates of a depsgraph that is evaluated at several times do not tell what has changed.
             parts = begin = None
-        sources = passes.sources(wanted)
-        options = ExportOptions(self.camera_override, sources, None if parts else kept, parts, begin, shutter=shutter)
+        frames = []
+        look = views.look(self, depsgraph, shutter, frames)
+        options = ExportOptions(self.camera_override, sources, None if parts else kept, parts, begin, shutter=shutter, **look)
         self._snapshot, messages = export_picture(depsgraph, options, self.frame_set, self._is_over)
         if parts is not None:
             self._following.give_back(parts)
             kept.count_parts(self._snapshot, parts)
-        self._views = views.views(self, depsgraph, self._snapshot.camera, messages)
+        self._views = views.views(self, depsgraph, self._snapshot.camera, messages, frames)
         motion = self._snapshot.motion
         if self._views[0].name and motion is not None and motion.keys:
             messages.add("with stereoscopy the motion of the camera is not blurred", "feature:camera motion with stereoscopy")

@@ -43,9 +43,11 @@ def is_wanted():
 def take(engine, depsgraph):
     """Fill the requested Export from this depsgraph, instead of rendering."""
     started = time.monotonic()
-    wanted = tuple(item.source for item in render_passes(depsgraph.scene, depsgraph.view_layer_eval))
+    scene, layer = depsgraph.scene, depsgraph.view_layer_eval
+    wanted = tuple(item.source for item in render_passes(scene, layer))
     try:
-        options = ExportOptions(engine.camera_override, wanted, shutter=shutter_of(depsgraph.scene, wants_vectors=False))
+        shutter = shutter_of(scene, layer, wanted)
+        options = ExportOptions(engine.camera_override, wanted, shutter=shutter)
         _asked.snapshot, _asked.messages = export_picture(depsgraph, options, engine.frame_set)
     except Exception as error:
         _asked.error = error

@@ -12,8 +12,9 @@ _PANORAMA = (
     "fisheye_polynomial_k0", "fisheye_polynomial_k1", "fisheye_polynomial_k2", "fisheye_polynomial_k3", "fisheye_polynomial_k4",
 )  # fmt: skip
 _PASSES = (
-    "use_pass_z", "use_pass_mist", "use_pass_position", "use_pass_normal", "use_pass_uv", "use_pass_object_index",
-    "use_pass_material_index", "use_pass_diffuse_direct", "use_pass_diffuse_indirect", "use_pass_diffuse_color",
+    "use_pass_z", "use_pass_mist", "use_pass_position", "use_pass_normal", "use_pass_vector", "use_pass_uv",
+    "use_pass_object_index", "use_pass_material_index", "use_pass_diffuse_direct", "use_pass_diffuse_indirect",
+    "use_pass_diffuse_color",
     "use_pass_glossy_direct", "use_pass_glossy_indirect", "use_pass_glossy_color", "use_pass_transmission_direct",
     "use_pass_transmission_indirect", "use_pass_transmission_color", "use_pass_emit", "use_pass_environment",
     "use_pass_ambient_occlusion", "use_pass_cryptomatte_object", "use_pass_cryptomatte_material", "use_pass_cryptomatte_asset",
@@ -50,6 +51,7 @@ CONTROLS = (
     Controls("CyclesRenderSettings", ("dicing_rate", "max_subdivisions", "dicing_camera", "offscreen_dicing_scale")),
     Controls("CyclesRenderSettings", ("feature_set",), before=(5, 0)),
     Controls("ViewLayer", ("use_sky", "use_solid", "material_override", "samples", "pass_alpha_threshold", *_PASSES)),
+    Controls("ViewLayer", ("use_motion_blur",)),
     Controls("ViewLayer", ("world_override",), since=(4, 2)),
     Controls("CyclesRenderLayerSettings", ("denoising_store_passes", "use_denoising", "pass_debug_sample_count")),
     Controls("CyclesRenderLayerSettings", ("use_pass_shadow_catcher",)),

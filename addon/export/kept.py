@@ -38,7 +38,7 @@ class Kept:
         self.scenes = {}  # the library's Scene of each view layer, from which the next picture takes what is the same
         self.sample_seconds = math.inf  # of one sample of the picture before
         self.counts = {}
-        self.instants = {}  # the Instants of the picture before, by their time in frames
+        self.instants = {}  # the Instants of the picture before, by view layer and by their time in frames
         self._others = ()
         self.next_picture()
 

@@ -1,7 +1,8 @@
-"""Motion of objects, meshes and the camera: keys that are read while Blender evaluates the scene at the times of the shutter.
+"""Motion of objects, meshes and the camera: keys that are read while Blender evaluates the scene at other times.
 
-The scene is evaluated once for each time, for all objects together. Instances are known again by their object, their instancer
-and Blender's persistent numbers, as in Cycles; one that another time lacks keeps the place that it has in the middle.
+The times are those of the shutter, or for the pass Vector one frame before the picture and one after. The scene is evaluated
+once for each time, for all objects together. Instances are known again by their object, their instancer and Blender's
+persistent numbers, as in Cycles; one that another time lacks keeps the place that it has in the middle.
 """
 
 import dataclasses
@@ -17,6 +18,7 @@ from .flat import is_singular
 from .mesh import read_shape, shown_mesh
 from .settings import world_of
 from .shutter import as_motion, key_count, relative_times, reshapes
+from .vectors import FRAMES, camera_in_frames, instance_vectors, mesh_in_frames
 
 _NUMBERS = 8  # of an entry's persistent id
 _MESH = int(InstanceKind.MESH)
@@ -42,7 +44,7 @@ class Instant:
         ids[marks[:, 1] == 0] = 0
         self.keys = np.concatenate([marks, np.ascontiguousarray(ids).view(np.uint64)], axis=1)
         self.columns = places.columns(depsgraph)
-        self.shapes, self.camera = {}, None
+        self.shapes, self.camera, self.views = {}, None, None
 
     def rows_of(self, keys):
         """Return the number of the entry with each of these keys, -1 where there is none."""
@@ -55,10 +57,10 @@ class Instant:
 class MotionReader:
     """Reads the keys of one export; the depsgraph is evaluated in the middle of the shutter when it is made."""
 
-    def __init__(self, depsgraph, table, places, camera, shutter):
-        """table, places: of the instances as they are now. camera: the camera object."""
-        self._depsgraph, self._table, self._places, self._shutter = depsgraph, table, places, shutter
-        self._camera = camera
+    def __init__(self, depsgraph, table, places, camera, options):
+        """table, places: of the instances as they are now. camera: the camera object. options: the ExportOptions."""
+        self._depsgraph, self._table, self._places, self._shutter = depsgraph, table, places, options.shutter
+        self._camera, self._options = camera, options
         middle = Instant(depsgraph, places)
         self._keys = middle.keys[places.entries]  # of the table's rows
         self._counts = np.zeros(len(table), np.int64)  # of keys, by row
@@ -66,7 +68,7 @@ class MotionReader:
         self._lamps = {}  # name by key
         self._instants = {}
         self._find_movers(middle)
-        self._camera_count = key_count(camera.original, camera.original, shutter)
+        self._camera_count = key_count(camera.original, camera.original, options.shutter)
 
     def _find_movers(self, middle):
         row_of = {int(entry): row for row, entry in enumerate(self._places.entries)}
@@ -101,6 +103,8 @@ class MotionReader:
         wanted = {self._keys[row].tobytes() for row in self._owners.values()}
         if instant is None or not wanted <= instant.shapes.keys() or instant.camera is None:
             return False
+        if self._options.views is not None and instant.views is None:
+            return False
         self._instants[relative] = instant
         return True
 
@@ -109,6 +113,8 @@ class MotionReader:
         obey()
         instant = self._instants[relative] = Instant(self._depsgraph, self._places)
         instant.camera = export_camera(self._camera, self._depsgraph, Messages())
+        if self._options.views is not None:
+            instant.views = self._options.views()
         wanted = {self._keys[row].tobytes() for row in self._owners.values()}
         if not wanted:
             return instant
@@ -124,6 +130,21 @@ class MotionReader:
 
     def result(self, snapshot, messages):
         """Return the snapshot with the motion that was read."""
+        return self._blurred(snapshot, messages) if self._shutter.blurs else self._with_vectors(snapshot, messages)
+
+    def _with_vectors(self, snapshot, messages):
+        frames = [self._instants[time] for time in FRAMES]
+        vectors = instance_vectors(self._table.matrices, [self._matrices(time) for time in FRAMES])
+        meshes = list(snapshot.meshes)
+        for number, _, (before, _, after) in self._shapes(meshes, messages):
+            meshes[number] = mesh_in_frames(meshes[number], (before, after))
+        if self._options.views is not None:
+            self._options.on_views(tuple(zip(*(frame.views for frame in frames), strict=True)))
+        camera = camera_in_frames(snapshot.camera, [frame.camera for frame in frames], self._camera, messages)
+        table = dataclasses.replace(snapshot.instances, vectors=vectors)
+        return snapshot.replaced(meshes=tuple(meshes), instances=table, camera=camera)
+
+    def _blurred(self, snapshot, messages):
         cameras = ()
         if self._camera_count:
             cameras = tuple(self._instants[time].camera for time in relative_times(self._camera_count))
@@ -133,8 +154,12 @@ class MotionReader:
         self._tell_lamps(messages)
         self._tell_world(messages)
         table = dataclasses.replace(snapshot.instances, motions=tuple(self._motions(messages)))
-        meshes = self._meshes(snapshot.meshes, messages)
-        return snapshot.replaced(meshes=meshes, instances=table, motion=as_motion(self._shutter, cameras))
+        meshes = list(snapshot.meshes)
+        for number, middle, shapes in self._shapes(meshes, messages):
+            moved = np.stack([shape.positions for shape in shapes])
+            normals = None if middle.normals is None else np.stack([shape.normals for shape in shapes])
+            meshes[number] = dataclasses.replace(meshes[number], moved_positions=moved, moved_normals=normals)
+        return snapshot.replaced(meshes=tuple(meshes), instances=table, motion=as_motion(self._shutter, cameras))
 
     def _tell_lamps(self, messages):
         """Name the lamps that move, of which Cycles blurs none."""
@@ -178,40 +203,42 @@ class MotionReader:
         matrices[missing] = self._table.matrices[missing]
         return matrices
 
-    def _meshes(self, meshes, messages):
-        """Return the meshes with the keys of those that change their shape."""
-        result = list(meshes)
+    def _shapes(self, meshes, messages):
+        """Yield (number, Shape in the middle, Shapes at the keys) of each mesh that changes its shape."""
+        blurs = self._shutter.blurs
         for number, row in self._owners.items():
             key = self._keys[row].tobytes()
             middle = self._instants[0.0].shapes.get(key)
             who = f"mesh '{meshes[number].name}'"
             # The mesh may have been cut by adaptive subdivision, whose faces follow the camera.
             if middle is None or not middle.fits(meshes[number]):
-                text = f"{who}: with adaptive subdivision its change of shape is not blurred"
+                left_out = "not blurred" if blurs else "not in the pass Vector"
+                text = f"{who}: with adaptive subdivision its change of shape is {left_out}"
                 messages.add(text, "feature:deformation motion of adaptive subdivision")
                 continue
             shapes = [self._instants[time].shapes.get(key, middle) for time in relative_times(int(self._counts[row]))]
             if not all(shape.like(middle) for shape in shapes):
-                messages.add(
-                    f"{who}: the number of its vertices changes within the shutter, as in Cycles it is not blurred then"
+                changes = (
+                    "within the shutter, as in Cycles it is not blurred then"
+                    if blurs
+                    else "from frame to frame, as in Cycles the pass Vector shows it as if it kept its shape"
                 )
+                messages.add(f"{who}: the number of its vertices changes {changes}")
                 shapes = [shape if shape.like(middle) else middle for shape in shapes]
             if all(np.array_equal(shape.positions, middle.positions) for shape in shapes):
                 continue
-            moved = np.stack([shape.positions for shape in shapes])
-            normals = None if middle.normals is None else np.stack([shape.normals for shape in shapes])
-            result[number] = dataclasses.replace(meshes[number], moved_positions=moved, moved_normals=normals)
-        return tuple(result)
+            yield number, middle, shapes
 
 
 def read_motion(snapshot, depsgraph, camera, places, options, messages, obey):
-    """Return the snapshot with the motion within the shutter, in whose middle the depsgraph is evaluated.
+    """Return the snapshot with the motion within the shutter, in whose middle the depsgraph is evaluated, or that of vectors.
 
     camera: the camera object. options: the ExportOptions, with shutter and set_frame.
     """
     shutter, kept = options.shutter, options.kept
-    known = kept.instants if kept is not None else {}
-    reader = MotionReader(depsgraph, snapshot.instances, places, camera, shutter)
+    layer = depsgraph.view_layer.name
+    known = kept.instants.get(layer, {}) if kept is not None else {}
+    reader = MotionReader(depsgraph, snapshot.instances, places, camera, options)
     found = {}
     for relative in reader.times():
         frame = shutter.frame_at(relative)
@@ -221,5 +248,5 @@ def read_motion(snapshot, depsgraph, camera, places, options, messages, obey):
                 options.set_frame(frame)
             found[frame] = reader.read(relative, obey)
     if kept is not None:
-        kept.instants = found
+        kept.instants[layer] = found
     return reader.result(snapshot, messages)

@@ -45,6 +45,10 @@ class ExportOptions:
     shutter: object = None
     set_frame: object = None
     shaders: object = None
+    # For the pass Vector of a picture with several views: views() returns the snapshot.Cameras of all views as the depsgraph is
+    # evaluated; on_views receives for each view those one frame before and one after.
+    views: object = None
+    on_views: object = None
     # For a window:
     view: object = None  # a snapshot.Camera that replaces the camera object
     dicing: object = None  # the snapshot.Camera by whose pixels meshes are divided
@@ -127,6 +131,7 @@ def export_scene(depsgraph, options=None, poll=None):
     if options.shutter is not None:
         at_middle = snapshot.replaced(camera=camera)
         snapshot = read_motion(at_middle, depsgraph, options.camera or scene.camera, instances.places, options, messages, obey)
+        camera = snapshot.camera
     if parts is not None:
         # The instance of a lamp moves with its instancer; the places of object and camera decide how a mesh is divided.
         moves_freely = not (instances.has_lamp_instances or divider.depends_on_places or instances.culls)

@@ -84,6 +84,7 @@ def export_settings(depsgraph, passes, world, messages, in_view=False):
         alpha_threshold=messages.number(depsgraph.view_layer_eval.pass_alpha_threshold, who, "alpha threshold", 0.5, 0.0, 1.0),
         environment_reflections=own.environment_reflections,
         blended_features=bpy.app.version >= (5, 2),
+        sky_vectors=bpy.app.version >= (5, 2),
         features=Features[own.features],
         passes=tuple(sorted({Pass.COMBINED, *(item for item in passes if not isinstance(item, NumberedPass))})),
         **extras(passes),

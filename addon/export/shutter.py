@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..bindings import snapshot
+from ..bindings.enums import Pass
 
 # Samples of the shutter's curve, and entries of its table, as in Cycles; steps of the opening that follows from them.
 _CURVE = 256
@@ -22,7 +23,7 @@ class Shutter:
 
     frames: float
     middle: float
-    opening: object  # how far it is open over time, for snapshot.Motion; None: nothing is blurred, keys serve the pass Vector
+    opening: object  # how far it is open over time, for snapshot.Motion; None: nothing is blurred, times are those of vectors
     rolling: bool = False
     rolling_duration: float = 0.1
 
@@ -35,15 +36,20 @@ class Shutter:
         return self.middle + 0.5 * relative * self.frames
 
 
-def shutter_of(scene, wants_vectors):
-    """Return the Shutter of a scene; None if nothing moves in its picture.
+def blurs_motion(scene, view_layer):
+    """Whether a picture of the view layer has motion blur."""
+    return scene.render.use_motion_blur and view_layer.use_motion_blur
 
-    wants_vectors: whether the pass Vector is requested, which Cycles leaves empty with motion blur.
+
+def shutter_of(scene, view_layer, passes):
+    """Return the Shutter of a view layer's picture with these passes; None if nothing moves in it.
+
+    With motion blur the pass Vector is empty, as in Cycles.
     """
     render = scene.render
     now = scene.frame_current + scene.frame_subframe
-    if not render.use_motion_blur:
-        return Shutter(2.0, now, None) if wants_vectors else None
+    if not blurs_motion(scene, view_layer):
+        return Shutter(2.0, now, None) if Pass.VECTOR in passes else None
     # Properties of Cycles, an add-on that may be disabled. The position was one of them before Blender 4.2.
     cycles = getattr(scene, "cycles", None)
     position = getattr(render, "motion_blur_position", None) or getattr(cycles, "motion_blur_position", "CENTER")

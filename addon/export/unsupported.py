@@ -8,12 +8,13 @@ from ..messages.severity import Severity
 from .catchers import is_catcher
 from .cycles_settings import check_cycles
 from .light_groups import MOST
+from .shutter import blurs_motion
 from .visibility import object_hidden_from, sees_light_apart
 
 # Passes that engine/passes.py renders, by the names of a view layer's switches.
 _COMPONENTS = ("diffuse", "glossy", "transmission")
 _PASSES_HERE = {f"{component}_{part}" for component in _COMPONENTS for part in ("direct", "indirect", "color")} | {
-    "combined", "z", "mist", "position", "normal", "uv", "object_index", "material_index", "emit", "environment",
+    "combined", "z", "mist", "position", "normal", "vector", "uv", "object_index", "material_index", "emit", "environment",
     "ambient_occlusion",
 }  # fmt: skip
 _PASSES_HERE.add("shadow_catcher")
@@ -59,6 +60,8 @@ def check_view_layer(scene, view_layer, messages):
     names = _missing_passes(view_layer)
     if names:
         messages.add(f"{who}: these passes are not supported: {', '.join(names)}", severity=Severity.LEFT_OUT)
+    if view_layer.use_pass_vector and blurs_motion(scene, view_layer):
+        messages.add(f"{who}: the pass Vector is empty with motion blur, as in Cycles")
     cycles = getattr(view_layer, "cycles", None)
     if getattr(cycles, "denoising_store_passes", False):
         if scene.render.film_transparent and view_layer.use_pass_environment:

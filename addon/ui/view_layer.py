@@ -3,10 +3,11 @@
 import bpy
 
 from ..bindings.enums import Pass
+from ..export.shutter import blurs_motion
 from ..export.unsupported import EMPTY_PASSES
 from .panel import LancerPanel, setting
 
-_DATA = ("z", "mist", "position", "normal", "uv")
+_DATA = ("z", "mist", "position", "normal", "vector", "uv")
 _CRYPTOMATTES = ("object", "material", "asset")
 _INDEXES = ("object_index", "material_index")
 _WORK = (("pass_debug_sample_count", "Sample Count"), ("pass_render_time", "Render Time"))
@@ -33,7 +34,9 @@ class LANCER_VIEWLAYER_PT_passes_data(LancerViewLayerPanel, bpy.types.Panel):
         whole = self._column()
         column = whole.column(heading="Include", align=True)
         for name in _DATA:
-            column.prop(layer, "use_pass_" + name)
+            row = column.row()
+            row.active = name != "vector" or not blurs_motion(context.scene, layer)
+            row.prop(layer, "use_pass_" + name)
         setting(column, "denoising_store_passes", getattr(layer, "cycles", None), text="Denoising Data")
         column.prop(own, "use_pass_albedo")
         column = whole.column(heading="Accuracy", align=True)
@@ -132,6 +135,9 @@ class LANCER_VIEWLAYER_PT_filter(LancerViewLayerPanel, bpy.types.Panel):
         column.prop(layer, "use_sky", text="Environment")
         column.prop(layer, "use_solid", text="Surfaces")
         column = whole.column(heading="Use", align=True)
+        column.active = context.scene.render.use_motion_blur
+        column.prop(layer, "use_motion_blur", text="Motion Blur")
+        column = whole.column(align=True)
         column.active = context.scene.lancer.use_denoising
         setting(column, "use_denoising", getattr(layer, "cycles", None), text="Denoising")
 

@@ -27,6 +27,7 @@ def calls_on_scenes(raw):
         "lancer_scene_set_object_infos": (0, pointer),
         "lancer_scene_add_object_attribute": (b"heat", 0, pointer),
         "lancer_scene_move_instances": (0, pointer, 3, pointer),
+        "lancer_scene_set_vectors": (0, pointer, pointer),
         "lancer_scene_set_motion": (ctypes.byref(raw.keep(abi.Motion())),),
         "lancer_scene_set_world": (ctypes.byref(raw.keep(raw.world())),),
         "lancer_scene_set_digest": (b"d" * 32,),

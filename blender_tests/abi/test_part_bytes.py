@@ -64,7 +64,7 @@ def test_pictures_follow_from_the_sums(read_and_told):
     # Light of a component is divided by its colour, and mist and occlusion are clamped.
     light = {which for which in read.summed if which in COMPONENTS and color_of(which) != which}
     plain = set(read.summed) - light - {Pass.MIST, Pass.AMBIENT_OCCLUSION}
-    assert Pass.COMBINED in plain and len(light) == 6 and len(plain) == 13
+    assert Pass.COMBINED in plain and len(light) == 6 and len(plain) == 14
     for which in sorted(plain):
         np.testing.assert_array_equal(read.picture(which), images[which], which.name)
     # Without sample 0, a pixel has no depth and no index.

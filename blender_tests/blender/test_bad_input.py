@@ -34,7 +34,7 @@ PICTURES = {
 # A list of words for each message of `unsupported_features`; there must be no other messages.
 UNSUPPORTED = [
     ["object 'Cube'", "hair", "'Fluff'"],
-    ["view layer", "Vector"],
+    ["view layer", "Subsurface Direct"],
     ["view layer", "Freestyle"],
     ["object 'Cube'", "shadow caustics"],
 ]

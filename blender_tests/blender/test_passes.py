@@ -13,6 +13,7 @@ NAMES = [
     ("Mist", "Mist", 1),
     ("Position", "Position", 3),
     ("Normal", "Normal", 3),
+    ("Vector", "Vector", 4),
     ("UV", "UV", 3),
     ("Object Index", "IndexOB", 1),
     ("Material Index", "IndexMA", 1),
@@ -101,7 +102,7 @@ def test_nothing_is_rendered_that_is_not_asked_for(case):
 
 def test_a_missing_pass_is_named(case):
     told = [line for line in case("missing_passes") if "passes are not supported" in line]
-    assert len(told) == 1 and "Vector" in told[0] and "Cryptomatte" not in told[0]
+    assert len(told) == 1 and "Subsurface Direct" in told[0] and "Cryptomatte" not in told[0]
 
 
 def test_albedo_may_come_alone(case):

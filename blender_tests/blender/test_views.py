@@ -28,6 +28,14 @@ def test_cameras(which, tmp_path):
     alike(got)
 
 
+def test_vectors_of_each_view(which, tmp_path):
+    """But for one pixel in fifty, at edges; Cycles' single precision keeps 1e-3 of a pixel's place."""
+    got = blenders.run(which, tmp_path, "view_cases", "vectors", str(tmp_path))
+    got.pop("console", None)
+    assert sorted(got) == ["cameras A", "cameras B", "eyes left", "eyes right"]
+    assert all(apart < 0.02 and most > 2.0 for apart, most in got.values()), got
+
+
 def test_the_accuracy_of_each_view_is_told(which, tmp_path):
     got = blenders.run(which, tmp_path, "view_cases", "told")
     assert [name.split(", ")[-1] for name in got["layers"]] == ["left", "right"]

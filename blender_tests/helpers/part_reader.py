@@ -179,10 +179,13 @@ class ReadPart:
                 values = 0.0 if tile.first is None else tile.first[:, self.of_first[which]]
             else:
                 # Smaller sums first, as the tree of all samples would.
-                total = np.zeros((len(tile.brightest), which.channels))
+                total = 0.0
                 for sums in reversed(tile.sums):
                     total = sums.channels[:, self.summed[which]] + total
-                values = (total / tile.count).astype(np.float32)
+                count = tile.count
+                if which is Pass.VECTOR:
+                    total, count = total[:, :-1], np.maximum(total[:, -1:], 1.0)
+                values = (total / count).astype(np.float32)
             image[self.place(tile.number)] = values
         return image
 
@@ -195,8 +198,10 @@ def color_of(which):
 def _places(passes):
     places, at = {}, 0
     for which in passes:
-        places[which] = slice(at, at + which.channels)
-        at += which.channels
+        # The number of samples with a vector follows the vectors.
+        width = which.channels + (which is Pass.VECTOR)
+        places[which] = slice(at, at + width)
+        at += width
     return places
 
 

@@ -41,6 +41,7 @@ def rich():
         ),
         moved_positions=np.stack([scale * np.asarray(plain.positions) for scale in (1.0, 2.0, 3.0)]),
         moved_normals=np.tile(np.float32([0, 0, 1]), (3, 4, 1)),
+        vector_positions=np.stack([scale * np.asarray(plain.positions) for scale in (0.5, 1.5)]),
     )
     pictures = (
         Image("bytes", np.arange(24).reshape(2, 3, 4).astype(np.uint8)),

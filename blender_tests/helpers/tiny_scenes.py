@@ -11,6 +11,7 @@ from addon.bindings.snapshot import (
     Camera,
     Instance,
     InstanceTable,
+    InstanceVectors,
     Light,
     Lobe,
     Material,
@@ -147,7 +148,7 @@ EXTRAS = (
 
 
 def showroom(pixels=32, **settings):
-    """Return a scene with many kinds of objects, for comparing configurations."""
+    """Return a scene with many kinds of objects, which move from frame to frame, for comparing configurations."""
     materials = [
         lambert((0.8, 0.7, 0.6)),
         beckmann(0.9, 0.2, 1.5),
@@ -188,9 +189,18 @@ def showroom(pixels=32, **settings):
         window=(-0.45, 0.45, -0.45, 0.45),
         lens_radius=0.02,
         focal_distance=6.0,
+        matrix_before=look_at((1.4, -6.0, 2.5), (0, 0, 0.8)),
+        matrix_after=look_at((1.5, -6.1, 2.5), (0, 0.1, 0.8)),
+        window_before=(-0.45, 0.45, -0.45, 0.45),
+        window_after=(-0.44, 0.44, -0.44, 0.44),
     )
+    square = quad(1.5)
+    square = dataclasses.replace(square, vector_positions=np.stack([0.9 * square.positions, 1.2 * square.positions]))
     defaults = {"samples": 4, "max_bounces": 6, "passes": tuple(Pass), **extras(EXTRAS)}
-    shown = scene(instances, materials, lights, [quad(1.5)], (0.1, 0.15, 0.2), camera, **{**defaults, **settings})
+    shown = scene(instances, materials, lights, [square], (0.1, 0.15, 0.2), camera, **{**defaults, **settings})
+    frames = np.array([(move(-1.2, 0.1, 1)[:3], move(-1.3, 0, 1.2)[:3]), (scale(0.7)[:3], (move(y=2) @ scale(0.9))[:3])])
+    table = dataclasses.replace(shown.instances, vectors=InstanceVectors([1, 3], frames))
+    shown = dataclasses.replace(shown, instances=table)
     return dataclasses.replace(shown, world=dataclasses.replace(shown.world, light_group=4))
 
 

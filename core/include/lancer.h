@@ -132,10 +132,12 @@ typedef struct lancer_mesh {
   uint32_t triangle_count;
   uint32_t normal_domain; /* LANCER_NORMALS_* */
   uint32_t attribute_count;
-  const float *moved_positions; /* of a mesh that changes its shape: [key_count][vertex_count][3]; the key in the middle is as
-                                   positions */
-  const float *moved_normals;   /* NULL: the normals keep; or [key_count] times as normals */
-  uint32_t key_count;           /* 0: the mesh keeps its shape; see lancer_motion */
+  const float *moved_positions;  /* of a mesh that changes its shape: [key_count][vertex_count][3]; the key in the middle is as
+                                    positions */
+  const float *moved_normals;    /* NULL: the normals keep; or [key_count] times as normals */
+  const float *vector_positions; /* for the pass VECTOR: [2][vertex_count][3], the vertices one frame before and one after;
+                                    NULL: the mesh keeps its shape */
+  uint32_t key_count;            /* 0: the mesh keeps its shape; see lancer_motion */
   uint32_t reserved;
 } lancer_mesh;
 
@@ -926,6 +928,11 @@ LANCER_API lancer_status lancer_scene_add_object_attribute(lancer_scene scene, c
  * not invertible stands still, with a message. An instance may be given once. */
 LANCER_API lancer_status lancer_scene_move_instances(lancer_scene scene, uint32_t count, const uint32_t *instances,
                                                      uint32_t key_count, const double *matrices);
+/* Tells the pass VECTOR where instances are one frame before the picture and one after: matrices[count][2][12];
+ * instances[count]: their numbers in order of adding. Other instances stand still. No ray is traced at these places. An
+ * instance with a matrix that is not finite stands still, with a message. An instance may be given once. */
+LANCER_API lancer_status lancer_scene_set_vectors(lancer_scene scene, uint32_t count, const uint32_t *instances,
+                                                  const double *matrices);
 /* Images are numbered 0, 1, 2 ... in order of adding. */
 LANCER_API lancer_status lancer_scene_add_image(lancer_scene scene, const lancer_image *image);
 
@@ -1038,6 +1045,9 @@ typedef struct lancer_camera {
    * From pole_merge_from to pole_merge_to above or below the horizon the offset fades to 0; pole_merge_to of 0 = it does not.
    */
   double eye_offset, convergence_distance, pole_merge_from, pole_merge_to;
+  /* For the pass VECTOR: matrix and window one frame before and one after; a matrix of zeros: those of the picture. */
+  double matrix_before[12], matrix_after[12];
+  double window_before[4], window_after[4];
 } lancer_camera;
 
 /* Motion while the shutter is open. Time runs from 0, where it opens, to 1, where it closes. Things that move are given at
@@ -1046,8 +1056,7 @@ typedef struct lancer_camera {
  */
 typedef struct lancer_motion {
   const float *shutter;      /* [shutter_count] how far the shutter is open, at equal steps of time from 0 to 1: samples choose
-                                their times in proportion. Not negative; NULL: all samples are of the time 0.5, as a sharp picture
-                                with the pass VECTOR wants */
+                                their times in proportion. Not negative; NULL: all samples are of the time 0.5 */
   uint32_t shutter_count;    /* 0, or at least 2 */
   uint32_t key_count;        /* of the camera; 0: it stands still */
   const lancer_camera *keys; /* [key_count] the camera of a session at the keys: matrix, window, panorama, lens_radius and
@@ -1101,7 +1110,11 @@ enum lancer_pass {
   /* For denoising by others, of the first surface, by the rule of Blender 5.2. */
   LANCER_PASS_SPECULAR_ALBEDO = 27, /* [3] albedo of its lobes by their mirror-like share, mean */
   LANCER_PASS_ROUGHNESS = 28,       /* [1] of its lobes, as of shader nodes, mean */
-  LANCER_PASS_COUNT = 29
+  /* Motion of the first surface in the picture, in pixels to the right and up: its place one frame before less its place, and
+   * its place less that one frame after; the mean of the samples that see a surface, 0 without any. See
+   * lancer_scene_set_vectors. */
+  LANCER_PASS_VECTOR = 29, /* [4] */
+  LANCER_PASS_COUNT = 30
 };
 
 /* Passes without a bit in lancer_settings.passes: the number of such a pass is its kind times LANCER_PASS_SPAN plus its number
@@ -1183,9 +1196,11 @@ typedef struct lancer_settings {
   float mist_falloff;               /* [amount 2] MIST: the exponent */
   uint32_t blended_features; /* [switch 0] ALBEDO, DENOISING_*: 0 = from one surface, as in Blender up to 5.1; 1 = blended
                                 over surfaces by their share of matt lobes, as in 5.2 */
+  uint32_t sky_vectors;      /* [switch 0] VECTOR: 1 = also of samples that see no surface, as in Blender 5.2, where places of
+                                directions are multiplied by their depth along the camera's z */
   uint32_t features;         /* [choice 0 1] LANCER_FEATURES_SCENE: only the work that the scene requires; ALL: work for all
                                 features. Same pixels */
-  uint32_t passes;           /* [bits 1 536870911] 1u << LANCER_PASS_*; COMBINED is always kept */
+  uint32_t passes;           /* [bits 1 1073741823] 1u << LANCER_PASS_*; COMBINED is always kept */
   uint32_t mattes;           /* [bits 0 7] kinds of mattes: 1 objects, 2 materials, 4 assets */
   uint32_t light_groups;     /* [number 0 1024] number of groups of lights, each with a pass */
   uint32_t aov_colors;       /* [number 0 1024] number of passes AOV_COLOR */
@@ -1340,11 +1355,11 @@ LANCER_API lancer_status lancer_compose_catchers(uint64_t count, const float *ma
  * of the last bounce and the one before: digits of base 256, the lowest one in units of 2^-150 for each tile, by rising number:
  *     u32 tile, u32 n, u32 d, u32 m (1 if the tile has sample 0, else 0)
  *     n times u32 start, u32 level: sums of the samples start ... start + 2^level - 1, by rising start, a multiple of 2^level
- *     n times f64[pixels][channels] sums of the summed passes in order of pass, as film_passes.cpp lists them, then of light
- *       groups, AOV_COLOR and AOV_VALUE; f32[pixels] difference of the mean luminances of both halves (0 if level is 0);
- *       f32[pixels][halves] the same of each colour that passes of halves tell, three numbers for each such pass, in order
- *       of pass; for each kind of mattes u32[pixels] number of mattes up to the end of each pixel, then of all mattes u32 id,
- *       by rising id within a pixel, and f64 sum of shares
+ *     n times f64[pixels][channels] sums of the summed passes in order of pass, as film_passes.cpp lists them, VECTOR followed
+ *       by the number of samples that have one, then of light groups, AOV_COLOR and AOV_VALUE; f32[pixels] difference of the
+ *       mean luminances of both halves (0 if level is 0); f32[pixels][halves] the same of each colour that passes of halves
+ *       tell, three numbers for each such pass, in order of pass; for each kind of mattes u32[pixels] number of mattes up to
+ *       the end of each pixel, then of all mattes u32 id, by rising id within a pixel, and f64 sum of shares
  *     f32[pixels] largest absolute luminance of a sample
  *     m times f32[pixels][channels] values of sample 0
  *     d times u64 number of dropped samples, by the bit width of the sample's number

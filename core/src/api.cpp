@@ -102,6 +102,12 @@ lancer_status lancer_scene_move_instances(lancer_scene scene, uint32_t count, co
                     [&](Description &description) { move_instances(description, count, instances, key_count, matrices); });
 }
 
+lancer_status lancer_scene_set_vectors(lancer_scene scene, uint32_t count, const uint32_t *instances, const double *matrices) {
+  static const char nothing = 0;
+  return fill_scene(scene, &nothing, "vectors",
+                    [&](Description &description) { set_vectors(description, count, instances, matrices); });
+}
+
 lancer_status lancer_scene_set_motion(lancer_scene scene, const lancer_motion *motion) {
   return fill_scene(scene, motion, "motion", [&](Description &description) { set_motion(description, *motion); });
 }

@@ -166,6 +166,7 @@ lancer_status lancer_scene_clear_instances(lancer_scene scene) {
     description.slots.clear();
     description.object_infos.clear();
     description.keys.clear();
+    description.vectors.clear();
     description.object_attributes.clear();
     description.instance_messages = {};
     return LANCER_OK;

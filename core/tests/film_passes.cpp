@@ -41,6 +41,8 @@ std::vector<SampleResult> synthetic(uint32_t count) {
     result.mist = number(random);
     result.denoising_normal = color();
     result.denoising_depth = number(random);
+    result.vector = glm::vec4(color(), number(random));
+    result.vector_weight = 1.0f;
   }
   return results;
 }
@@ -111,6 +113,7 @@ TEST(FilmPasses, EveryPassShowsItsOwnNumbers) {
                             mean_of(results, [&](const auto &r) { return r.light[color].z; });
     EXPECT_EQ(read(*film, pass(LANCER_PASS_EMISSION + light)).back(), float(expected)) << light;
   }
+  expect_mean(Pass::Vector, [](const auto &r) { return r.vector.w; });
   EXPECT_EQ(read(*film, Pass::Mist).back(), float(1.0 - mean_of(results, [](const auto &r) { return r.mist; })));
   EXPECT_EQ(read(*film, Pass::Depth).back(), results[0].depth);
   EXPECT_EQ(read(*film, Pass::Position).back(), results[0].position.z);
@@ -192,6 +195,16 @@ TEST(FilmPasses, MistIsWhatIsNotClear) {
   EXPECT_EQ(read(*film_of({clear, sky}), Pass::Mist)[0], 0.625f);
   EXPECT_EQ(read(*film_of({sky}), Pass::Mist)[0], 1.0f);
   EXPECT_EQ(read(*film_of({bright}), Pass::Mist)[0], 0.0f);
+}
+
+TEST(FilmPasses, VectorsAreTheMeanOfThoseThereAre) {
+  SampleResult first, second, sky;
+  first.vector = {1.0f, -2.0f, 3.0f, 0.5f};
+  second.vector = {3.0f, 2.0f, 4.0f, 1.5f};
+  first.vector_weight = second.vector_weight = 1.0f;
+  EXPECT_EQ(read(*film_of({first, sky, second, sky, sky}), Pass::Vector), (std::vector<float>{2.0f, 0.0f, 3.5f, 1.0f}));
+  EXPECT_EQ(read(*film_of({sky}), Pass::Vector), std::vector<float>(4, 0.0f));
+  EXPECT_EQ(Film::bytes_needed(1, 1, bit(Pass::Vector), 1), kPlain + 5 * sizeof(double));
 }
 
 TEST(FilmPasses, FiniteMeansEveryNumberThatIsSummed) {

@@ -55,6 +55,7 @@ SUBJECTS = (
     "fast_gi",
     "passes_light",
     "passes_data",
+    "passes_vectors",
     "passes_chosen",
     "real_models",
 )

@@ -168,7 +168,7 @@ def unsupported_features():
     system.name = "Fluff"
     system.settings.type, system.settings.render_type, system.settings.count = "HAIR", "PATH", 5
     # Passes and Freestyle. Without a line set Blender draws no lines, for which it would need a graphics device.
-    layer.use_pass_mist = layer.use_pass_diffuse_direct = layer.use_pass_vector = True
+    layer.use_pass_mist = layer.use_pass_diffuse_direct = layer.use_pass_subsurface_direct = True
     layer.use_pass_cryptomatte_object = layer.use_pass_z = True
     layer.aovs.add().name = "Rust"
     scene.render.use_freestyle = True

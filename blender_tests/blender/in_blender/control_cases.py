@@ -38,7 +38,7 @@ def exported(scene, view_layer):
     """Return ((snapshot, passes), messages)."""
     view_layer.update()
     wanted = tuple(render_passes(scene, view_layer))
-    options = ExportOptions(passes=sources(wanted), shutter=shutter_of(scene, wants_vectors=False))
+    options = ExportOptions(passes=sources(wanted), shutter=shutter_of(scene, view_layer, sources(wanted)))
     depsgraph = bpy.context.evaluated_depsgraph_get()
     try:
         snapshot, messages = export_picture(depsgraph, options, lambda *time: _set_frame(scene, *time))
@@ -272,7 +272,7 @@ class _Stage:
         scene.frame_set(1)
         scene.render.use_motion_blur = True
         scene.cycles.rolling_shutter_type = "TOP"
-        yield now(scene.render, scene.cycles, cube.cycles)
+        yield now(scene.render, scene.cycles, cube.cycles, scene.view_layers[0])
         scene.render.use_motion_blur = False
         cube.shape_key_clear()
         cube.animation_data_clear()

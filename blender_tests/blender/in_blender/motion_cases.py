@@ -16,10 +16,15 @@ from addon.export.shutter import opening_of
 SIZE = 24
 
 
-def _slide(thing, path="location", first=(-1.0, 0.0, 0.5), last=(1.0, 0.0, 0.5)):
+def slide(thing, path="location", first=(-1.0, 0.0, 0.5), last=(1.0, 0.0, 0.5)):
     for frame, value in ((0, first), (4, last)):
         setattr(thing, path, value)
         thing.keyframe_insert(path, frame=frame)
+    straighten(thing)
+
+
+def straighten(thing):
+    """Let an object move at constant speed from key to key."""
     action = thing.id_data.animation_data.action
     curves = action.fcurves if bpy.app.version < (4, 4) else action.layers[0].strips[0].channelbags[0].fcurves
     for curve in curves:
@@ -31,7 +36,7 @@ def _room(frame=2):
     scene = stage.empty(SIZE, SIZE, 8)
     stage.plane(material=stage.shader(Color=(0.6, 0.6, 0.6)))
     thing = stage.cube(0.8, stage.shader("ShaderNodeEmission"))
-    _slide(thing)
+    slide(thing)
     stage.camera((0, -6, 2))
     scene.render.use_motion_blur, scene.render.motion_blur_shutter = True, 1.0
     scene.frame_set(frame)
@@ -42,7 +47,7 @@ def _frame(scene):
     return scene.frame_current, scene.frame_subframe
 
 
-class _Watch:
+class Watch:
     """Notes the frames that the export sets and the snapshots that it makes; may fail or cancel at a time."""
 
     def __init__(self, at=None, error=None):
@@ -77,12 +82,12 @@ def frames():
         scene, _ = _room()
         owner = scene.render if hasattr(scene.render, "motion_blur_position") else scene.cycles
         owner.motion_blur_position = position
-        with _Watch() as watch:
+        with Watch() as watch:
             bpy.ops.render.render()
         result[position] = watch.frames, _frame(scene)
     for name, error in (("failed", LancerError("no more")), ("cancelled", Cancelled())):
         scene, _ = _room()
-        with _Watch(1, error) as watch:
+        with Watch(1, error) as watch:
             try:
                 bpy.ops.render.render()
             except RuntimeError as raised:
@@ -96,13 +101,13 @@ def animation():
     scene, _ = _room(1)
     scene.frame_start, scene.frame_end = 1, 3
     scene.render.filepath = os.path.join(tempfile.mkdtemp(), "frame")
-    with _Watch() as watch:
+    with Watch() as watch:
         bpy.ops.render.render(animation=True)
     together = [(s.instances, s.meshes, s.motion) for s in watch.snapshots]
     alone = []
     for frame in (1, 2, 3):
         scene, _ = _room(frame)
-        with _Watch() as single:
+        with Watch() as single:
             bpy.ops.render.render()
         alone.append(single.snapshots[0])
     same = [
@@ -119,11 +124,11 @@ def keys():
     still = stage.cube(0.5, stage.shader(), location=(0, 2, 0))
     still.name = "Still"
     off = stage.cube(0.5, stage.shader(), location=(0, 3, 0))
-    _slide(off)
+    slide(off)
     off.cycles.use_motion_blur = False
     exact = stage.ball(0.5, stage.shader())
     exact.lancer.shape = "SPHERE"
-    _slide(exact)
+    slide(exact)
     bent = stage.cube(0.5, stage.shader(), location=(2, 2, 0))
     bent.shape_key_add(name="Basis")
     key = bent.shape_key_add(name="Bent")
@@ -139,16 +144,16 @@ def keys():
         array.keyframe_insert("count", frame=frame)
     turns_over = stage.cube(0.5, stage.shader(), location=(4, 2, 0))
     turns_over.name = "Turns over"
-    _slide(turns_over, "scale", (-1.0, 1.0, 1.0), (1.0, 1.0, 1.0))
+    slide(turns_over, "scale", (-1.0, 1.0, 1.0), (1.0, 1.0, 1.0))
     stage.light().name = "Still lamp"
     lamp = stage.light(location=(1, 1, 3))
     lamp.name = "Lantern"
-    _slide(lamp)
+    slide(lamp)
     stage.sky()
     strength = scene.world.node_tree.nodes["Background"].inputs["Strength"]
     strength.keyframe_insert("default_value", frame=1)
     scene.frame_set(2)
-    with _Watch() as watch:
+    with Watch() as watch:
         bpy.ops.render.render()
     snapshot = watch.snapshots[0]
     names = snapshot.instances.names
@@ -176,7 +181,7 @@ def instances():
     for frame in range(1, 4):
         scene.frame_set(frame)
     scene.frame_set(2)
-    with _Watch() as watch:
+    with Watch() as watch:
         bpy.ops.render.render()
     ways = [
         (matrices[1:, :, 3] - matrices[:-1, :, 3]).round(3).tolist()

@@ -10,7 +10,8 @@ import stage
 
 _COMPONENTS = ("diffuse", "glossy", "transmission")
 _SWITCHES = [f"{component}_{part}" for component in _COMPONENTS for part in ("direct", "indirect", "color")] + [
-    "z", "mist", "position", "normal", "uv", "object_index", "material_index", "emit", "environment", "ambient_occlusion",
+    "z", "mist", "position", "normal", "vector", "uv", "object_index", "material_index", "emit", "environment",
+    "ambient_occlusion",
 ]  # fmt: skip
 
 
@@ -43,7 +44,11 @@ def _gallery():
     pane.data.materials[0].pass_index = 9
     stage.light(energy=300.0)
     stage.sky((0.3, 0.4, 0.6))
-    stage.camera((0, -5, 1.6), (0, 0, 0.9))
+    eye = stage.camera((0, -5, 1.6), (0, 0, 0.9))
+    for frame in (0, 2):
+        eye.location.x = 0.2 * (frame - 1)
+        eye.keyframe_insert("location", frame=frame)
+    scene.frame_set(1)
     return scene
 
 
@@ -155,7 +160,7 @@ def no_pass():
 def missing_passes():
     """Return the messages about passes that are not supported."""
     scene = _gallery()
-    _ask(scene.view_layers[0], "vector", "cryptomatte_object")
+    _ask(scene.view_layers[0], "subsurface_direct", "cryptomatte_object")
     return _read(scene)[1]
 
 

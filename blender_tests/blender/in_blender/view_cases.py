@@ -35,8 +35,8 @@ def _scene():
     return scene, camera
 
 
-def _rendered(scene, folder):
-    """Return {engine: {view: picture}}."""
+def _rendered(scene, folder, which="Combined"):
+    """Return {engine: {view: picture of a pass}}."""
     found = {}
     for engine in ("LANCER", "CYCLES"):
         scene.render.engine = engine
@@ -45,7 +45,7 @@ def _rendered(scene, folder):
         scene.render.image_settings.views_format = "MULTIVIEW"
         bpy.ops.render.render(write_still=True)
         passes = exr.read(path)
-        found[engine] = {name.split(".")[1]: passes[name] for name in passes if name.startswith("Combined.")}
+        found[engine] = {name.split(".")[1]: passes[name] for name in passes if name.startswith(f"{which}.")}
     return found
 
 
@@ -88,6 +88,12 @@ def stereo(folder):
 def cameras(folder):
     """Each view has a camera of its own, by the ends of their names."""
     scene, camera = _scene()
+    _two_cameras(scene, camera)
+    return _differences(_rendered(scene, folder))
+
+
+def _two_cameras(scene, camera):
+    """Let the scene's views be those of its camera and of another one, which is returned."""
     camera.name = "Camera_A"
     other = stage.camera(location=(2.0, -2.5, 1.5), target=(0.0, 0.0, 0.6))
     other.name = "Camera_B"
@@ -98,7 +104,34 @@ def cameras(folder):
     for end in "AB":
         view = scene.render.views.new(end)
         view.camera_suffix, view.use = f"_{end}", True
-    return _differences(_rendered(scene, folder))
+    return other
+
+
+def vectors(folder):
+    """Return {view: largest difference and largest value of both engines' vectors} of eyes and of cameras that move."""
+    result = {}
+    for kind in ("eyes", "cameras"):
+        scene, camera = _scene()
+        seen = [camera]
+        if kind == "cameras":
+            seen.append(_two_cameras(scene, camera))
+        camera.data.stereo.interocular_distance, camera.data.stereo.convergence_distance = 0.4, 3.0
+        for number, eye in enumerate(seen):
+            place = eye.location.copy()
+            for frame in (1, 3):
+                eye.location.x = place.x + 0.2 * (1 + number) * (frame - 2)
+                eye.keyframe_insert("location", frame=frame)
+        scene.frame_set(2)
+        scene.view_layers[0].use_pass_vector = True
+        # Samples at the middle of pixels show the same edges in both engines.
+        for owner in (scene.cycles, scene.lancer):
+            owner.filter_width = 0.01
+        scene.cycles.pixel_filter_type = scene.lancer.pixel_filter = "BLACKMAN_HARRIS"
+        ours, theirs = _rendered(scene, folder, "Vector").values()
+        for view in theirs:
+            apart = np.sort(np.abs(ours[view] - theirs[view]).max(axis=-1).ravel())
+            result[f"{kind} {view}"] = float(apart[int(0.98 * apart.size)]), float(np.abs(theirs[view]).max())
+    return result
 
 
 def told():

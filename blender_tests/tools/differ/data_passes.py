@@ -19,8 +19,11 @@ _FLIPPED, _CHANCE = 0.03, 3
 _ODD = 0.01
 
 
-def differs(ours, theirs, camera=None):
-    """Return "" or how two pictures of one pass, each two halves, differ. camera: its place, for a pass of positions."""
+def differs(ours, theirs, camera=None, least=0.0):
+    """Return "" or how two pictures of one pass, each two halves, differ.
+
+    camera: its place, for a pass of positions. least: the least level.
+    """
     if figures.measure(ours, theirs, figures.KINDS["PIXELS"]).mean == np.inf:
         return "one of them shows a surface where the other shows none"
     ours, theirs = ((one + other) / 2 for one, other in (ours, theirs))
@@ -29,6 +32,7 @@ def differs(ours, theirs, camera=None):
     if not seen.any():
         return ""
     level = np.abs(shown[1][seen]).mean() if camera is None else np.linalg.norm(shown[1][seen] - camera, axis=-1).mean()
+    level = max(level, least)
     low, high = _neighbours(shown[1])
     limit = _SHARE * level + _BESIDE * (high - low)
     far = np.any(np.abs(shown[0] - shown[1]) > limit, axis=-1) & seen

@@ -9,7 +9,7 @@ _LIGHT_PASSES = (
     "Transmission Direct", "Transmission Indirect", "Transmission Color", "Emission", "Environment", "Ambient Occlusion",
     "Mist", "Denoising Albedo", "Denoising Normal", "Denoising Depth",
 )  # fmt: skip
-_DATA_PASSES = ("Depth", "Position", "Normal", "UV", "Object Index", "Material Index")
+_DATA_PASSES = ("Depth", "Position", "Normal", "Vector", "UV", "Object Index", "Material Index")
 _PANORAMAS = (
     "EQUIRECTANGULAR", "FISHEYE_EQUIDISTANT", "FISHEYE_EQUISOLID", "FISHEYE_LENS_POLYNOMIAL", "MIRRORBALL",
     "CENTRAL_CYLINDRICAL",

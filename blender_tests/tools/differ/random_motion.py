@@ -1,16 +1,19 @@
-"""Random motion within an open shutter: of objects, what they hang on, the camera, its lens and modifiers that deform."""
+"""Random motion within an open shutter, or for the pass Vector: of objects, what they hang on, the camera, its lens and
+modifiers that deform.
+"""
 
 from .record import Record
 
-_SHARE = 0.2
+_SHARE, _SHARE_OF_VECTORS = 0.2, 0.9
 # Settings of modifiers that deform without another number of vertices, and how far they go.
 _DEFORMING = {"SIMPLE_DEFORM": ("factor", 0.4), "DISPLACE": ("strength", 0.15), "ARRAY": ("constant_offset_displace", 0.2)}
 
 
 def motion(dice, records):
-    """Records of motion; none in most scenes, and where data of single samples are compared."""
-    is_data = any(record.fields.get("kind") == "DATA" for record in records if record.verb == "frame")
-    if is_data or not dice.chance(_SHARE):
+    """Records of motion; none in most scenes, and where data of single samples are compared but vectors."""
+    frame = next(record.fields for record in records if record.verb == "frame")
+    of_vectors = "Vector" in frame["passes"]
+    if frame.get("kind") == "DATA" and not of_vectors or not dice.chance(_SHARE_OF_VECTORS if of_vectors else _SHARE):
         return []
     moving = []
     for record in records:
@@ -22,7 +25,9 @@ def motion(dice, records):
             path, most = _DEFORMING[record.fields["type"]]
             by = dice.vector(-most, most) if path.endswith("displace") else dice.number(0.05, most)
             moving.append(_change(record.fields["object"][1:], path, by, modifier=record.name))
-    return [*moving, Record("shutter", "Shutter", _shutter(dice))] if moving else []
+    if not moving or of_vectors:
+        return moving
+    return [*moving, Record("shutter", "Shutter", _shutter(dice))]
 
 
 def _object(dice, record):

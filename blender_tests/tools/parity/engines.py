@@ -14,6 +14,7 @@ PASSES = {
     "Mist": ("use_pass_mist", "Mist"),
     "Position": ("use_pass_position", "Position"),
     "Normal": ("use_pass_normal", "Normal"),
+    "Vector": ("use_pass_vector", "Vector"),
     "UV": ("use_pass_uv", "UV"),
     "Object Index": ("use_pass_object_index", "IndexOB"),
     "Material Index": ("use_pass_material_index", "IndexMA"),

@@ -7,6 +7,7 @@
 #include "simd/parallel.h"
 
 #include <chrono>
+#include <map>
 
 namespace lancer {
 
@@ -40,6 +41,28 @@ Motion normalised(Motion motion, const Normalisation &normalisation) {
   for (PlacementKey &place : motion.places)
     place.translation = normalisation.to_normalised(place.translation);
   return motion;
+}
+
+InstanceVectors place_vectors(std::span<const GivenVectors> given, const Scene &scene) {
+  InstanceVectors vectors;
+  if (given.empty())
+    return vectors;
+  const std::span<const Instance> instances = scene.geometry.instances;
+  std::map<uint32_t, uint32_t> place_of; // by Instance::number
+  for (uint32_t i = 0; i < instances.size(); ++i)
+    place_of[instances[i].number] = i;
+  vectors.of_instance.assign(instances.size(), kNone);
+  for (const GivenVectors &of : given) {
+    // An instance that was left out shows nothing.
+    const auto place = place_of.find(of.instance);
+    if (place == place_of.end())
+      continue;
+    vectors.of_instance[place->second] = uint32_t(vectors.places.size());
+    MomentPlaces &places = vectors.places.emplace_back();
+    for (uint32_t moment = 0; moment < kMoments; ++moment)
+      places[moment] = scene.normalisation.to_normalised(of.to_world[moment]);
+  }
+  return vectors;
 }
 
 Environment make_environment(const Scene &scene, const BuildContext &context, const Scene *before) {
@@ -145,6 +168,7 @@ std::shared_ptr<const Scene> commit(const Description &given, AcceleratorKind ki
   scene->normalisation = scene->placed->normalisation;
   if (description.motion)
     scene->motion = normalised(*description.motion, scene->normalisation);
+  scene->vectors = place_vectors(description.vectors, *scene);
   scene->slots = std::move(description.slots);
   scene->transparent_instances =
       find_instances(*scene, [&](const Instance &, uint32_t material) { return scene->materials[material].is_transparent(); });
@@ -172,8 +196,8 @@ uint32_t Scene::face_number(uint32_t instance, uint32_t primitive) const {
 }
 
 size_t Scene::geometry_bytes() const {
-  return placed->bytes() + slots.size() * sizeof(uint32_t) + transparent_instances.size() + perforated_instances.size() +
-         linked_blockers.size() + lights.bytes();
+  return placed->bytes() + vectors.bytes() + slots.size() * sizeof(uint32_t) + transparent_instances.size() +
+         perforated_instances.size() + linked_blockers.size() + lights.bytes();
 }
 
 size_t Scene::texture_bytes() const {

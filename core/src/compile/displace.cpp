@@ -135,10 +135,11 @@ private:
     for (size_t i = 0; i < sums.size(); ++i)
       if (counts[i])
         mesh_.positions[i] = glm::vec3(glm::dvec3(mesh_.positions[i]) + sums[i] / double(counts[i]));
-    // As in Cycles, all keys are displaced as the mesh is in the middle.
-    for (size_t i = 0; i < mesh_.moved_positions.size(); ++i)
-      if (const size_t vertex = i % sums.size(); counts[vertex])
-        mesh_.moved_positions[i] = glm::vec3(glm::dvec3(mesh_.moved_positions[i]) + sums[vertex] / double(counts[vertex]));
+    // As in Cycles, the mesh is displaced at all keys and moments as it is in the picture.
+    for (std::vector<glm::vec3> *positions : {&mesh_.moved_positions, &mesh_.vector_positions})
+      for (size_t i = 0; i < positions->size(); ++i)
+        if (const size_t vertex = i % sums.size(); counts[vertex])
+          (*positions)[i] = glm::vec3(glm::dvec3((*positions)[i]) + sums[vertex] / double(counts[vertex]));
   }
 
   // Recomputes the normals of the displaced faces, at all keys.

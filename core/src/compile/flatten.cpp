@@ -52,10 +52,9 @@ void lay_mesh(Mesh &mesh, uint32_t number, const glm::dvec3 &axis, bool keeps_ge
   for (const MeshAttribute &attribute : mesh.attributes)
     if (attribute.channels >= 3 && (attribute.name == kUndisplaced || attribute_of(attribute.name).starts_with("tangent:")))
       lay(std::span(mesh.attribute_values).subspan(attribute.first, mesh.count_of(attribute)), attribute.channels, axis);
-  for (glm::vec3 &p : mesh.positions)
-    p = glm::vec3(across(axis, glm::dvec3(p)));
-  for (glm::vec3 &p : mesh.moved_positions)
-    p = glm::vec3(across(axis, glm::dvec3(p)));
+  for (std::vector<glm::vec3> *positions : {&mesh.positions, &mesh.moved_positions, &mesh.vector_positions})
+    for (glm::vec3 &p : *positions)
+      p = glm::vec3(across(axis, glm::dvec3(p)));
   // Cofactors map each normal to one side of the plane, or to 0, which selects the face's normal.
   for (std::vector<glm::vec3> *normals : {&mesh.normals, &mesh.moved_normals})
     for (glm::vec3 &n : *normals) {

@@ -12,6 +12,7 @@
 #include "lights/light_set.h"
 #include "scene/affine.h"
 #include "scene/description.h"
+#include "scene/vectors.h"
 
 namespace lancer {
 
@@ -46,7 +47,8 @@ struct Scene {
   LightSet lights;
   LampShaders lamp_shaders; // of lights.lamps()
   Normalisation normalisation;
-  Motion motion;         // of camera and shutter, in the normalised world
+  Motion motion; // of camera and shutter, in the normalised world
+  InstanceVectors vectors;
   uint32_t features = 0; // bits of features.h
   uint32_t shapes = 0;   // of lobes, as in Features
   std::shared_ptr<const Accelerator> accelerator;

@@ -43,6 +43,7 @@ using SettingOf =
                        std::conditional_t<kind == SettingKind::Amount || kind == SettingKind::Width, float, uint32_t>>;
 
 struct Bake;
+struct CameraMoments;
 
 struct IntegratorSettings {
 #define LANCER_MEMBER(kind, name, given, most) SettingOf<SettingKind::kind> name = given;
@@ -51,6 +52,7 @@ struct IntegratorSettings {
   Splits splits{};                           // as the settings say, or as a pilot has found
   const std::atomic<bool> *cancel = nullptr; // raised: a batch may end with invalid results
   const Bake *bake = nullptr;                // of a bake, PATH
+  const CameraMoments *moments = nullptr;    // of the camera, for the pass Vector; null: it stands still
 
   IntegratorKind kind() const { return static_cast<IntegratorKind>(integrator); }
   FilterKind filter() const { return static_cast<FilterKind>(pixel_filter); }
@@ -96,6 +98,8 @@ struct SampleResult {
   float denoising_depth = 0.0f;
   glm::vec3 specular_albedo{0.0f};
   float roughness = 0.0f;
+  glm::vec4 vector{0.0f};     // see aov/vectors.h
+  float vector_weight = 0.0f; // 1 where there is a vector
   // The hit of the camera ray.
   float depth = 1e10f; // user's units along the camera's z, of a panorama: distance; 1e10: no hit
   glm::vec3 position{0.0f};

@@ -12,7 +12,7 @@ enum class Pass : uint32_t {
   = 9, Environment = 10, AmbientOcclusion = 11, DiffuseDirect = 12, DiffuseIndirect = 13, DiffuseColor = 14, GlossyDirect = 15,
   GlossyIndirect = 16, GlossyColor = 17, TransmissionDirect = 18, TransmissionIndirect = 19, TransmissionColor = 20,
   DenoisingNormal = 21, DenoisingDepth = 22, Error = 23, Halves = 24, AlbedoHalves = 25, NormalHalves = 26, SpecularAlbedo = 27,
-  Roughness = 28
+  Roughness = 28, Vector = 29
 };
 // clang-format on
 
@@ -53,8 +53,9 @@ enum class Pass : uint32_t {
   X(Amount, mist_depth, 25.0f, 0xffffffffu)                                                                                    \
   X(Amount, mist_falloff, 2.0f, 0xffffffffu)                                                                                   \
   X(Switch, blended_features, false, 0xffffffffu)                                                                              \
+  X(Switch, sky_vectors, false, 0xffffffffu)                                                                                   \
   X(Choice, features, 0u, 1u)                                                                                                  \
-  X(Bits, passes, 1u, 536870911u)                                                                                              \
+  X(Bits, passes, 1u, 1073741823u)                                                                                             \
   X(Bits, mattes, 0u, 7u)                                                                                                      \
   X(Number, light_groups, 0u, 1024u)                                                                                           \
   X(Number, aov_colors, 0u, 1024u)                                                                                             \

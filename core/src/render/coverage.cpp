@@ -1,5 +1,6 @@
 #include "render/coverage.h"
 
+#include "integrator/aov/vectors.h"
 #include "integrator/stages/light_passes.h"
 #include "lancer.h"
 
@@ -211,7 +212,7 @@ Background find_background(const Scene &scene, const Camera &camera, const Integ
   // Surfaces and the camera are projected as they stand.
   const bool moves = scene.motion.shutter.opens() && ((scene.features & kFeatureMotion) || !scene.motion.cameras.empty());
   if (settings.kind() != IntegratorKind::Path || settings.bake || settings.samples < kLeastPlanned || settings.all_features() ||
-      moves || !has_even_background(scene, camera))
+      moves || sky_vectors_vary(settings) || !has_even_background(scene, camera))
     return Background();
   Background background;
   background.coverage = Coverage(scene, camera, settings.filter_width, kProjectedEach * film.width() * film.height());

@@ -42,7 +42,7 @@ Film::Layout::Layout(uint32_t passes, const ExtraLayout &given) : extras(given) 
     uint32_t &next = of_first_sample(pass) ? first_channels : summed_channels;
     add(of_first_sample(pass) ? first : summed, pass, next);
     at[i] = next;
-    next += channels(pass);
+    next += kept_channels(pass);
   }
   first_extra = summed_channels;
   summed_channels += extras.channels();
@@ -55,7 +55,7 @@ Film::Layout::Layout(uint32_t passes, const ExtraLayout &given) : extras(given) 
 }
 
 void Film::Layout::add(std::vector<Run> &runs, Pass pass, uint32_t to) {
-  const uint32_t from = place_in_sample(pass), count = channels(pass);
+  const uint32_t from = place_in_sample(pass), count = kept_channels(pass);
   if (!runs.empty() && runs.back().from + runs.back().count == from)
     runs.back().count += count;
   else

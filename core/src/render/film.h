@@ -14,6 +14,8 @@ namespace lancer {
 inline constexpr uint32_t kPassCount = LANCER_PASS_COUNT;
 
 uint32_t channels(Pass pass);
+// Returns how many channels a film keeps of a pass. After the vectors comes their weight, by which their sum is divided.
+uint32_t kept_channels(Pass pass);
 // Whether the pass stores the value of sample 0 alone: a mean of depths or indices would belong to no object.
 bool of_first_sample(Pass pass);
 // Returns the colour that a direct or indirect pass is divided by, or the pass itself if there is none.
@@ -181,8 +183,9 @@ private:
   void join_mattes(const Node &earlier, Sums &later) const;
   // Calls write(tile, pixel, target) for each pixel that has samples; others are 0.
   template <class Write> void read_each(uint32_t width, std::span<float> out, Write &&write) const;
-  // Returns the mean of a pixel's summed channel, joined along the tree.
-  static double mean_of(const Tile &tile, size_t place);
+  // Return the sum and the mean of a pixel's summed channel, joined along the tree.
+  static double sum_of(const Tile &tile, size_t place);
+  static double mean_of(const Tile &tile, size_t place) { return sum_of(tile, place) / double(tile.count); }
   glm::dvec4 matte_of(const Tile &tile, uint32_t pixel) const;
   // Returns the pass SHADOW_CATCHER of a pixel.
   glm::dvec3 catcher_of(const Tile &tile, uint32_t pixel) const;

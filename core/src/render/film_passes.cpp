@@ -16,6 +16,7 @@ static_assert(uint32_t(LANCER_PASS_EMISSION) + kLightComponents == LANCER_PASS_D
 uint32_t channels(Pass pass) {
   switch (pass) {
   case Pass::Combined:
+  case Pass::Vector:
     return 4;
   case Pass::Depth:
   case Pass::ObjectIndex:
@@ -29,6 +30,8 @@ uint32_t channels(Pass pass) {
     return 3;
   }
 }
+
+uint32_t kept_channels(Pass pass) { return channels(pass) + (pass == Pass::Vector ? 1 : 0); }
 
 bool of_first_sample(Pass pass) {
   return pass == Pass::Depth || pass == Pass::Position || pass == Pass::ObjectIndex || pass == Pass::MaterialIndex;
@@ -97,6 +100,8 @@ uint32_t place_in_sample(Pass pass) {
     return LANCER_PLACE(specular_albedo);
   case Pass::Roughness:
     return LANCER_PLACE(roughness);
+  case Pass::Vector:
+    return LANCER_PLACE(vector);
   default:
     return LANCER_PLACE(light) + 3 * (uint32_t(pass) - uint32_t(Pass::Emission));
   }
@@ -149,23 +154,28 @@ void Film::read(Pass pass, std::span<float> out) const {
   }
 }
 
-double Film::mean_of(const Tile &tile, size_t place) {
+double Film::sum_of(const Tile &tile, size_t place) {
   // Join the waiting sums, later and smaller ones first, as the tree would.
   double sum = 0.0;
   for (auto node = tile.nodes.rbegin(); node != tile.nodes.rend(); ++node)
     sum = node->sums.channels[place] + sum;
-  return sum / double(tile.count);
+  return sum;
 }
 
 void Film::read_means(Pass pass, const Tile &tile, uint32_t pixel, float *target) const {
   const size_t place = size_t(pixel) * layout_.summed_channels;
-  const auto mean = [&](Pass of, uint32_t channel) { return mean_of(tile, place + layout_.at[uint32_t(of)] + channel); };
+  const auto total = [&](Pass of, uint32_t channel) { return sum_of(tile, place + layout_.at[uint32_t(of)] + channel); };
+  const auto mean = [&](Pass of, uint32_t channel) { return total(of, channel) / double(tile.count); };
   const auto color = [&](Pass of) { return glm::dvec3(mean(of, 0), mean(of, 1), mean(of, 2)); };
   if (divisor(pass) != pass) {
     // A colour may be so dark that the quotient exceeds the range of float.
     const glm::vec3 light = nearest_float(divide_by_color(color(pass), color(divisor(pass))));
     for (int i = 0; i < 3; ++i)
       target[i] = light[i];
+  } else if (pass == Pass::Vector) {
+    const double weight = total(pass, 4);
+    for (uint32_t c = 0; c < channels(pass); ++c)
+      target[c] = weight > 0.0 ? float(total(pass, c) / weight) : 0.0f;
   } else if (pass == Pass::Mist) {
     // Samples sum up the share without mist; the sky is all mist.
     target[0] = float(std::clamp(1.0 - mean(pass, 0), 0.0, 1.0));

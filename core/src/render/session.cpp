@@ -29,6 +29,12 @@ Camera normalised(Camera camera, const Scene *scene) {
   return camera;
 }
 
+CameraMoments normalised(CameraMoments moments, const Scene *scene) {
+  for (Camera &camera : moments.cameras)
+    camera = normalised(camera, scene);
+  return moments;
+}
+
 // Returns the number of sums that wait at most in each pixel, beside the few tiles in work. A film that is refined doubles the
 // samples of its tiles: each has one sum, or two. A film whose samples are multiples of an eighth of their largest power of two
 // has at most four, until the last range.
@@ -73,12 +79,13 @@ uint32_t tile_size(const Camera &camera, const IntegratorSettings &settings, uin
 Session::Session(std::shared_ptr<const Scene> scene, const Camera &camera, const IntegratorSettings &settings,
                  const Identity &identity, std::unique_ptr<const Bake> bake)
     : scene_(std::move(scene)), camera_(normalised(checked_memory(camera, settings), scene_.get())), identity_(identity),
-      bake_(std::move(bake)), settings_(settings),
+      bake_(std::move(bake)), moments_(normalised(read_camera_moments(identity.camera), scene_.get())), settings_(settings),
       film_(camera.region_width, camera.region_height, tile_size(camera, settings, ThreadPool::resolved(settings.threads)),
             settings.passes, settings.refines, settings.extras()),
       pool_(scene_ ? settings.threads : 1) {
   settings_.cancel = &cancel_;
   settings_.bake = bake_.get();
+  settings_.moments = &moments_;
   splits_ = settings_.splits;
   for (uint32_t i = 0; scene_ && i < pool_.size(); ++i)
     workers_.push_back(std::make_unique<TileWorker>(*scene_, camera_, settings_));

@@ -9,6 +9,7 @@
 #include "render/thread_pool.h"
 #include "render/tile_worker.h"
 #include "scene/bake.h"
+#include "scene/vectors.h"
 
 #include <atomic>
 #include <chrono>
@@ -53,7 +54,7 @@ public:
   // camera in the user's units. scene: null for a session that joins parts and cannot render. Throws Error when camera,
   // settings or memory do not allow the film. bake: with as many texels as the camera has pixels.
   Session(std::shared_ptr<const Scene> scene, const Camera &camera, const IntegratorSettings &settings,
-          const Identity &identity = {}, std::unique_ptr<const Bake> bake = nullptr);
+          const Identity &identity, std::unique_ptr<const Bake> bake = nullptr);
   ~Session();
 
   // Starts samples first ... first + count - 1; throws Error when first does not follow the last sample, or while another range
@@ -123,6 +124,7 @@ private:
   Identity identity_;
 
   std::unique_ptr<const Bake> bake_; // of a bake
+  CameraMoments moments_;            // normalised
   IntegratorSettings settings_;
   Film film_;
   std::vector<std::unique_ptr<TileWorker>> workers_;

@@ -212,7 +212,7 @@ double Camera::depth(const glm::dvec3 &p) const {
 }
 
 glm::vec3 Camera::direction_to_camera(const glm::dvec3 &d) const {
-  const glm::dvec3 local = glm::transpose(to_world.linear) * d;
+  const glm::dvec3 local = to_local(d);
   if (!is_panorama())
     return glm::vec3(local.x, local.y, -local.z);
   // Blender's panoramas face +x with z up; those of a mirror ball face -y.
@@ -228,13 +228,16 @@ glm::dvec3 Camera::direction_from_camera(const glm::dvec3 &d) const {
 glm::vec3 Camera::to_camera(const glm::dvec3 &p) const { return direction_to_camera(p - to_world.translation); }
 
 glm::vec3 Camera::to_window(const glm::dvec3 &p) const {
-  const glm::dvec3 local = glm::transpose(to_world.linear) * (p - to_world.translation);
+  return glm::vec3(glm::dvec3(window_place(to_local(p - to_world.translation)), 0.0));
+}
+
+glm::dvec2 Camera::window_place(const glm::dvec3 &local) const {
   glm::dvec2 place(local);
   if (kind == CameraKind::Perspective)
     place = glm::dvec2(local) / -local.z;
   else if (is_panorama())
     place = panorama_place(*this, glm::normalize(local));
-  return glm::vec3(glm::dvec3((place.x - left) / (right - left), (place.y - bottom) / (top - bottom), 0.0));
+  return {(place.x - left) / (right - left), (place.y - bottom) / (top - bottom)};
 }
 
 namespace {
@@ -279,7 +282,7 @@ double relative_change(const Camera &camera, const glm::dvec3 &local, double at_
 } // namespace
 
 double relative_spread(const Camera &camera, const glm::dvec3 &d) {
-  return relative_change(camera, glm::transpose(camera.to_world.linear) * d, change_at_middle(camera));
+  return relative_change(camera, camera.to_local(d), change_at_middle(camera));
 }
 
 PixelSpread::PixelSpread(const Camera &camera) : camera_(camera) {
@@ -290,7 +293,7 @@ PixelSpread::PixelSpread(const Camera &camera) : camera_(camera) {
 }
 
 double PixelSpread::operator()(const glm::dvec3 &d) const {
-  const glm::dvec3 local = glm::transpose(camera_.to_world.linear) * d;
+  const glm::dvec3 local = camera_.to_local(d);
   if (!camera_.is_panorama())
     return of_middle_ * relative_change(camera_, local, relative_to_);
   const glm::dvec3 here = glm::normalize(local);

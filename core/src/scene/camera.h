@@ -62,6 +62,9 @@ struct Camera {
   glm::dvec3 direction_from_camera(const glm::dvec3 &d) const;
   // Returns the place of a point in the picture: (0, 0) the lower left corner, (1, 1) the upper right; z is 0.
   glm::vec3 to_window(const glm::dvec3 &p) const;
+  // Returns the same of a point in the camera's own frame, and a direction of the world in that frame.
+  glm::dvec2 window_place(const glm::dvec3 &local) const;
+  glm::dvec3 to_local(const glm::dvec3 &d) const { return glm::transpose(to_world.linear) * d; }
 };
 
 // Radius of the footprint of a pixel in the middle of the picture: base at distance 0, plus spread per unit of distance;

@@ -7,6 +7,7 @@
 #include "scene/material.h"
 #include "scene/messages.h"
 #include "scene/shutter.h"
+#include "scene/vectors.h"
 
 #include <memory>
 #include <string>
@@ -38,6 +39,7 @@ struct Description {
   Given<World> world;
   uint32_t instances_given = 0;         // including those left out
   std::vector<PlacementKey> keys;       // of instances that move
+  std::vector<GivenVectors> vectors;    // of instances that move between moments
   std::shared_ptr<const Motion> motion; // of the camera and the shutter; null: everything is seen at the middle time
   Messages instance_messages;
   Messages made_messages; // about the parts that commit() makes

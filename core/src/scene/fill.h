@@ -49,6 +49,7 @@ void add_instances(Description &description, uint32_t count, const lancer_instan
 void move_instances(Description &description, uint32_t count, const uint32_t *instances, uint32_t key_count,
                     const double *matrices);
 void set_motion(Description &description, const lancer_motion &motion);
+void set_vectors(Description &description, uint32_t count, const uint32_t *instances, const double *matrices);
 void set_object_infos(Description &description, uint32_t count, const float *infos);
 void add_object_attribute(Description &description, const char *name, uint32_t count, const float *values);
 void add_material(Description &description, const lancer_material &material);
@@ -71,6 +72,8 @@ Schedule schedule_of(std::span<const Output> outputs, const Program &program);
 
 // Checks and copies a camera; throws an Error for invalid values.
 Camera read_camera(const lancer_camera &source);
+// Does the same for a camera at the moments of the pass Vector.
+CameraMoments read_camera_moments(const lancer_camera &source);
 // Throws an Error if the camera, in the normalised world, is too far from the scene.
 void check_reach(const Camera &camera);
 

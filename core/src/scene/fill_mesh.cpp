@@ -138,6 +138,20 @@ void copy_attribute(const lancer_attribute &source, Mesh &mesh) {
   mesh.attribute_values.insert(mesh.attribute_values.end(), source.values, source.values + mesh.count_of(attribute));
 }
 
+// Copies the vertices at the moments of the pass Vector. A vertex that is not finite there stands still.
+void copy_vector_positions(const std::string &object, const lancer_mesh &source, Mesh &mesh, Messages &messages) {
+  copy(source.vector_positions, size_t(source.vertex_count) * kMoments, mesh.vector_positions);
+  size_t replaced = 0;
+  for (size_t i = 0; i < mesh.vector_positions.size(); ++i)
+    if (!is_usable(mesh.vector_positions[i])) {
+      mesh.vector_positions[i] = mesh.positions[i % mesh.positions.size()];
+      ++replaced;
+    }
+  if (replaced)
+    messages.add(object, std::to_string(replaced) +
+                             " vertices one frame before or after are not finite; in the pass Vector they stand still");
+}
+
 // Finds the bounds of all usable vertices.
 void find_bounds(Mesh &mesh) {
   glm::vec3 low(INFINITY), high(-INFINITY);
@@ -183,6 +197,7 @@ Mesh read_mesh(const lancer_mesh &source, size_t number, Messages &messages) {
   mesh.key_count = source.key_count;
   copy(source.moved_positions, size_t(source.vertex_count) * source.key_count, mesh.moved_positions);
   copy(source.moved_normals, mesh.normals.size() * source.key_count, mesh.moved_normals);
+  copy_vector_positions(object, source, mesh, messages);
   copy(source.uvs, size_t(source.triangle_count) * 3, mesh.uvs);
   copy(source.colors, size_t(source.triangle_count) * 3, mesh.colors);
   if (source.material_slots)

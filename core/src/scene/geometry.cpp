@@ -104,11 +104,12 @@ Mesh::operator MeshView() const {
           .centers = {},
           .moved_positions = moved_positions,
           .moved_normals = moved_normals,
+          .vector_positions = vector_positions,
           .key_count = key_count};
 }
 
 size_t Mesh::bytes() const {
-  return (positions.size() + moved_positions.size() + moved_normals.size()) * sizeof(glm::vec3) +
+  return (positions.size() + moved_positions.size() + moved_normals.size() + vector_positions.size()) * sizeof(glm::vec3) +
          triangles.size() * sizeof(glm::uvec3) + (normals.size() + colors.size()) * sizeof(glm::vec3) +
          uvs.size() * sizeof(glm::vec2) + material_slots.size() * sizeof(uint16_t) +
          (face_of.size() + polygons.size()) * sizeof(uint32_t) + attribute_values.size() * sizeof(float);

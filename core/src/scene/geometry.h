@@ -53,6 +53,7 @@ struct MeshView {
       smooth_normals;                     // per vertex; only if an instance with PHONG or GOURAUD uses a mesh without normals
   std::span<const PolygonCenter> centers; // by polygon; only if an instance with FLAT uses a mesh with polygons
   std::span<const glm::vec3> moved_positions, moved_normals; // key after key; as positions and normals
+  std::span<const glm::vec3> vector_positions;               // as positions, at the moments of scene/vectors.h; or empty
   uint32_t key_count = 0;                                    // 0: the mesh keeps its shape
 
   glm::vec3 vertex(uint32_t triangle, int corner) const { return positions[triangles[triangle][corner]]; }
@@ -91,6 +92,7 @@ struct Mesh {
   std::vector<MeshAttribute> attributes;
   std::vector<float> attribute_values;                   // of all attributes
   std::vector<glm::vec3> moved_positions, moved_normals; // key after key: as positions, and as normals or empty
+  std::vector<glm::vec3> vector_positions;               // see MeshView
   uint32_t key_count = 0;                                // 0: the mesh keeps its shape
   glm::vec3 low{-1.0f}, high{1.0f};                      // bounds of the given positions
   NormalDomain normal_domain = NormalDomain::None;

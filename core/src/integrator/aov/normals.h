@@ -3,6 +3,7 @@
 
 #include "integrator/aov/first_surface.h"
 #include "integrator/aov/surface_extras.h"
+#include "integrator/aov/vectors.h"
 #include "integrator/sample.h"
 #include "integrator/stages/camera.h"
 #include "integrator/stages/light_passes.h"
@@ -17,7 +18,8 @@ class NormalsIntegrator final : public Integrator {
 public:
   NormalsIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
       : scene_(scene), camera_(camera), settings_(settings), generator_(camera, scene.motion, settings),
-        surfaces_(scene, camera, settings), queues_(scene), passes_(settings), sky_values_(scene.world.program.value_count()) {}
+        surfaces_(scene, camera, settings), queues_(scene), passes_(settings), vectors_(scene, camera, settings),
+        sky_values_(scene.world.program.value_count()) {}
 
   void run(std::span<const SampleAddress> addresses, std::span<SampleResult> results, std::vector<PathVertex> *trace) override {
     extras_.begin(addresses.size(), settings_.extras());
@@ -56,6 +58,7 @@ private:
       result.radiance = scene_.lights.environment().radiance(glm::normalize(ray.d), sky_values_, &camera_, &ray.o,
                                                              {.kinds = RayKind::Camera});
     add_sky_guides(begin_guides(settings_, passes_.guides()), result);
+    vectors_.record_sky(ray.d, result);
   }
 
   void show_block(std::span<SampleResult> results, std::vector<PathVertex> *trace) {
@@ -80,6 +83,7 @@ private:
     const double t = surfaces_.hit(lane).t;
     record_place(scene_, surface, surfaces_.material(lane), t, result);
     record_first_surface(scene_, settings_, surface, get(surfaces_.means().normal, lane), result);
+    vectors_.record(surface, result);
     record_seen(scene_, camera_, settings_, passes_, surface, surfaces_, lane, glm::vec3(1.0f), result);
     add_mattes(scene_, settings_.extras(), sample, surface.instance, surfaces_.material(lane), 1.0f, extras_);
     add_outputs(settings_.extras(), sample, surfaces_, lane, extras_);
@@ -100,6 +104,7 @@ private:
   SurfaceStage surfaces_;
   ShadingQueues queues_;
   LightPasses passes_;
+  Vectors vectors_;
   std::vector<glm::vec4> sky_values_; // of the world's nodes
   uint32_t number_[kBlockLanes];      // number of the ray of each lane of the block
   std::vector<uint32_t> samples_;     // rays_[i] belongs to results[samples_[i]]

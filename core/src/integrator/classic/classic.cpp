@@ -39,8 +39,9 @@ glm::vec3 ambient_light(const Scene &scene, const Camera &camera) {
 
 ClassicIntegrator::ClassicIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
     : scene_(scene), camera_(camera), settings_(settings), generator_(camera, scene.motion, settings), light_(scene, &camera),
-      shadows_(scene, camera, settings), passes_(settings), queues_(scene), surfaces_(scene, camera, settings),
-      kernel_(classic_kernel()), ambient_(ambient_light(scene, camera)), layout_(settings.extras()),
+      shadows_(scene, camera, settings), passes_(settings), vectors_(scene, camera, settings), queues_(scene),
+      surfaces_(scene, camera, settings), kernel_(classic_kernel()), ambient_(ambient_light(scene, camera)),
+      layout_(settings.extras()),
       only_combined_(settings.passes == bit(Pass::Combined) && !layout_.mattes && !layout_.has_outputs()),
       sky_values_(scene.world.program.value_count()) {}
 
@@ -113,6 +114,8 @@ void ClassicIntegrator::generate(std::span<const SampleAddress> addresses, std::
 void ClassicIntegrator::miss(const Branch &branch, const glm::dvec3 &eye, const glm::vec3 &direction, SampleResult &result) {
   if (branch.depth == 0)
     add_sky_guides(branch.guides, result);
+  if (branch.depth == 0 && !branch.seen)
+    vectors_.record_sky(glm::dvec3(direction), result);
   if (branch.depth == 0 && !branch.seen && layout_.has_outputs())
     add_sky_outputs(scene_, camera_, settings_, first_ + branch.sample, glm::dvec3(direction), eye, {.kinds = branch.kinds},
                     sky_values_, extras_);

@@ -3,6 +3,7 @@
 
 #include "compile/scene.h"
 #include "integrator/aov/first_surface.h"
+#include "integrator/aov/vectors.h"
 #include "integrator/stages/camera.h"
 #include "integrator/stages/light.h"
 #include "integrator/stages/light_passes.h"
@@ -162,6 +163,7 @@ private:
   LightStage light_;
   ShadowStage shadows_;
   LightPasses passes_;
+  Vectors vectors_;
   ShadingQueues queues_;
   SurfaceStage surfaces_;
   const ClassicKernel &kernel_;

@@ -125,6 +125,7 @@ void ClassicIntegrator::record(std::span<SampleResult> results) {
     if (!branch.seen && mean(surfaces_.opacity(lane)) >= settings_.alpha_threshold) {
       record_place(scene_, met, surfaces_.material(lane), branch.passed + hits_[number].t, result);
       record_first_surface(scene_, settings_, met, get(surfaces_.means().normal, lane), result);
+      vectors_.record(met, result);
       branch.seen = true;
     }
     add_mattes(scene_, layout_, first_ + branch.sample, met.instance, surfaces_.material(lane),

@@ -199,7 +199,10 @@ void PathFilm::record(const Path &path, const SurfaceStage &surfaces, uint32_t l
     surface = surfaces.surface(lane);
   else
     surface.p = get(surfaces.surfaces().p, lane);
-  surface.instance = surfaces.hit(lane).instance;
+  const Hit &hit = surfaces.hit(lane);
+  surface.instance = hit.instance;
+  surface.primitive = hit.primitive;
+  surface.bary = {hit.u, hit.v};
   record(path, surface, surfaces.material(lane), get(surfaces.means().normal, lane), recorded_opacity(surfaces, lane),
          surfaces.hit(lane).t);
   // Add the colours of the surface by component.
@@ -218,8 +221,10 @@ void PathFilm::record(const Path &path, const Surface &surface, const MaterialVi
   // Place passes use the first sample of a pixel.
   if (path.leads && !record.seen && path.is_first(settings_.splits.paths))
     record_place(scene_, surface, material, record.depth + t, result);
-  if (here)
+  if (here) {
     record_first_surface(scene_, settings_, surface, normal, result);
+    vectors_.record(surface, result);
+  }
   record.seen |= here;
   if (passes.mist())
     result.mist += (1.0f - mist_at(scene_, camera_, settings_, surface)) * mean(path.beta * opacity);
@@ -274,12 +279,14 @@ void PathFilm::pass_absent(Path &path, const Ray &ray, HitStage &stage, size_t n
   }
 }
 
-bool PathFilm::miss(const Path &path) {
+bool PathFilm::miss(const Path &path, const Ray &ray) {
   if (path.of_catchers)
     return !path.in_view || !settings_.film_transparent;
   SampleResult &result = results_[path.sample];
-  if (awaits_surface(path))
+  if (awaits_surface(path)) {
     forget_place(result);
+    vectors_.record_sky(ray.d, result);
+  }
   if (path.scatterings == 0 && passes.guides())
     add_sky_guides(guides_[path.sample], result);
   // A transparent film does not show the environment itself, only the light that it gives. The environment's pass shows both.

@@ -4,6 +4,7 @@
 
 #include "integrator/aov/first_surface.h"
 #include "integrator/aov/surface_extras.h"
+#include "integrator/aov/vectors.h"
 #include "integrator/path/catcher_film.h"
 #include "integrator/path/path_state.h"
 #include "integrator/sample.h"
@@ -22,7 +23,8 @@ class PathFilm {
 public:
   PathFilm(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
       : passes(settings), scene_(scene), camera_(camera), settings_(settings), layout_(settings.extras()), catchers_(layout_),
-        shader_(scene, &camera), cone_(camera), sky_values_(scene.world.program.value_count()) {}
+        shader_(scene, &camera), cone_(camera), vectors_(scene, camera, settings),
+        sky_values_(scene.world.program.value_count()) {}
   void set_splits(const Splits &splits) { settings_.splits = splits; }
 
   // Begins the next batch, whose results and extras are written to the given places. trace: receives the vertices; may be null.
@@ -100,7 +102,7 @@ public:
   }
   // Subtracts the share of a transparent film from the alpha of a path that hits nothing. Returns whether picture or passes
   // show the environment there.
-  bool miss(const Path &path);
+  bool miss(const Path &path, const Ray &ray);
 
   // Whether a path stays in the camera's view by its lane's next ray: the view continues through clear glass.
   bool stays_in_view(const ScatterBlock &next, uint32_t lane) const {
@@ -171,6 +173,7 @@ private:
   CatcherFilm catchers_;
   Shader shader_; // of absent surfaces
   PixelCone cone_;
+  Vectors vectors_;
   Shaded absent_;
   std::vector<glm::vec4> sky_values_; // of the world's nodes
   std::vector<PathVertex> *trace_ = nullptr;
