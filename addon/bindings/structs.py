@@ -496,7 +496,6 @@ class Part(Structure):
         ("tiles", c_uint32),
         ("first", c_uint32),
         ("end", c_uint32),
-        ("reserved", c_uint32),
     ]
 
 

@@ -1382,7 +1382,6 @@ typedef struct lancer_part {
   uint32_t split_lights, split_paths; /* the numbers in use, as in settings */
   uint32_t tiles;                     /* number of tiles with samples */
   uint32_t first, end;                /* the lowest number of a sample, and the highest plus 1 */
-  uint32_t reserved;
 } lancer_part;
 
 /* Writes the number of pixels of the first capacity tiles; *count receives the number of tiles. */
