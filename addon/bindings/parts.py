@@ -100,7 +100,8 @@ def _bytes_of(part):
 def _camera(raw):
     values = {f.name: getattr(raw, f.name) for f in dataclasses.fields(Camera)}
     values |= {name: tuple(values[name]) for name in ("window", "panorama")}
-    return Camera(**values | {"matrix": np.array(values["matrix"]).reshape(3, 4)})
+    matrices = ("matrix", "matrix_before", "matrix_after")
+    return Camera(**values | {name: np.array(values[name]).reshape(3, 4) for name in matrices})
 
 
 def _settings(raw, splits):

@@ -69,7 +69,8 @@ def test_focal_distance_must_be_positive_where_a_lens_is(raw):
 
 
 @pytest.mark.parametrize(
-    "field, value", [("integrator", 3), ("pixel_filter", 2), ("features", 2), ("passes", 1 << 29), ("mattes", 8)]
+    "field, value",
+    [("integrator", 3), ("pixel_filter", 2), ("features", 2), ("passes", 1 << 30), ("mattes", 8), ("catchers", 3)],
 )
 def test_wrong_choices_in_settings(raw, field, value):
     refused(raw.create_session(raw.committed(), settings=raw.settings(**{field: value})), str(value))

@@ -278,6 +278,15 @@ def test_the_sky_of_blender_5_2(integrator):
     assert (render(still, Pass.VECTOR) == 0.0).all()
 
 
+def test_the_sky_of_an_orthographic_camera():
+    """A direction of the user's unit, whatever the size of the scene: one that turns by an angle moves by its sine."""
+    camera = seen_from(ABOVE, move(z=5) @ rotate_y(0.1), move(z=5) @ rotate_y(-0.2))
+    for size in (0.01, 2.0):
+        snapshot = one(camera, mesh=quad(size), sky_vectors=True)
+        found = render(snapshot, Pass.VECTOR)[0, 0]
+        np.testing.assert_allclose(found, [2.0 * np.sin(0.1), 0.0, 2.0 * np.sin(0.2), 0.0], **ERROR)
+
+
 def test_what_shows_through_a_veil():
     """A surface of less opacity than the threshold is passed, and one behind it gives the vector; a mirror shows its own."""
     mirror = Material("mirror", lobes=(Lobe(LobeKind.MIRROR, color=(0.9, 0.9, 0.9)),))

@@ -66,9 +66,11 @@ void Vectors::record_direction(const glm::dvec3 &d, SampleResult &result) const 
   result.vector_weight = 1.0f;
   if (!moments_)
     return;
-  const glm::dvec3 unit = glm::normalize(d);
-  add(raster_of_direction(moments_->cameras[0], unit), raster_of_direction(camera_, unit),
-      raster_of_direction(moments_->cameras[1], unit), result);
+  // An orthographic camera, whose window has lengths, sees directions as long as the user's unit.
+  const double length = camera_.kind == CameraKind::Orthographic ? scene_.normalisation.scale : 1.0;
+  const glm::dvec3 there = length * glm::normalize(d);
+  add(raster_of_direction(moments_->cameras[0], there), raster_of_direction(camera_, there),
+      raster_of_direction(moments_->cameras[1], there), result);
 }
 
 bool sky_vectors_vary(const IntegratorSettings &settings) {
