@@ -45,14 +45,15 @@ def area_of(matrix, shape, size):
     return area * float(np.linalg.norm(np.cross(x, y)) / (np.linalg.norm(x) * np.linalg.norm(y)))
 
 
-def is_sheared(matrix):
-    """Whether the axes are not orthogonal. Parents leave errors of 1e-5 in single precision; ten times that bends a cone by
-    0.006 degrees, which is invisible.
+def is_sheared(matrices):
+    """Whether the axes of each matrix are not orthogonal. Parents leave errors of 1e-5 in single precision; ten times that
+    bends a cone by 0.006 degrees, which is invisible.
     """
-    columns = matrix[:3, :3].T
-    lengths = np.linalg.norm(columns, axis=1)
-    x, y, z = columns / np.where(lengths > 0.0, lengths, 1.0)[:, None]
-    return max(abs(x @ y), abs(x @ z), abs(y @ z)) > 1e-4
+    columns = matrices[..., :3, :3]
+    lengths = np.linalg.norm(columns, axis=-2, keepdims=True)
+    axes = columns / np.where(lengths > 0.0, lengths, 1.0)
+    cosines = np.swapaxes(axes, -1, -2) @ axes
+    return np.abs(cosines[..., [0, 0, 1], [1, 2, 2]]).max(axis=-1) > 1e-4
 
 
 def is_flattened(kind, matrix, depsgraph):

@@ -15,6 +15,7 @@ from ..messages.messages import Messages
 from ..messages.severity import Severity
 from .camera import export_camera
 from .flat import is_singular
+from .lamp_transforms import is_sheared
 from .mesh import read_shape, shown_mesh
 from .settings import world_of
 from .shutter import as_motion, key_count, relative_times, reshapes
@@ -192,6 +193,12 @@ class MotionReader:
             flat = is_singular(keys[..., :3].reshape(-1, 3, 3)).reshape(len(rows), count).any(axis=1)
             for name in np.unique(self._table.name_indices[rows[flat]]):
                 messages.add(f"object '{self._table.names[name]}': a scale is 0 within the shutter; its motion is not blurred")
+            leaning = (is_sheared(keys) & (np.linalg.det(keys[..., :3]) < 0.0)).any(axis=1) & ~flat
+            for name in np.unique(self._table.name_indices[rows[leaning]]):
+                messages.add(
+                    f"object '{self._table.names[name]}': moves while it is mirrored and sheared, "
+                    "Cycles shears it another way, here it keeps its shape"
+                )
             if not flat.all():
                 yield InstanceMotion(instances=rows[~flat], matrices=keys[~flat])
 

@@ -30,7 +30,8 @@ def test_frames_of_an_animation_share_times(which, tmp_path):
 def test_keys_of_objects_and_meshes(which, tmp_path):
     got = blenders.run(which, tmp_path, "motion_cases", "keys")
     # Two units in four frames, with the shutter open for one frame: half a unit. Two steps are five keys.
-    assert got["moving"] == {"Cube": [5, [0.5, 0.0, 0.0]], "Ball": [3, [0.5, 0.0, 0.0]]}
+    slid = {name: [3, [0.5, 0.0, 0.0]] for name in ("Ball", "Leans", "Leans unmirrored")}
+    assert got["moving"] == {"Cube": [5, [0.5, 0.0, 0.0]], **slid}
     assert list(got["shapes"].values()) == [3] and len(got["shapes"]) == 1
     assert got["camera"] == 0
     told = [line for line in got["lines"] if "vertices" in line]
@@ -41,6 +42,10 @@ def test_keys_of_objects_and_meshes(which, tmp_path):
     assert worlds == ["world 'World': its nodes are animated, as in Cycles it shines as in the middle of the shutter"]
     flat = [line for line in got["lines"] if "scale is 0" in line]
     assert flat == ["object 'Turns over': a scale is 0 within the shutter; its motion is not blurred"]
+    sheared = [line for line in got["lines"] if "sheared" in line]
+    assert sheared == [
+        "object 'Leans': moves while it is mirrored and sheared, Cycles shears it another way, here it keeps its shape"
+    ]
 
 
 @both

@@ -145,6 +145,11 @@ def keys():
     turns_over = stage.cube(0.5, stage.shader(), location=(4, 2, 0))
     turns_over.name = "Turns over"
     slide(turns_over, "scale", (-1.0, 1.0, 1.0), (1.0, 1.0, 1.0))
+    for name, sides in (("Leans", (1.0, -0.5, 1.0)), ("Leans unmirrored", (1.0, 0.5, 1.0))):
+        leans = stage.cube(0.5, stage.shader(), location=(5, 2, 0), rotation=(0.0, 0.0, 0.5))
+        leans.name, leans.parent = name, stage.link(f"{name} parent", None)
+        leans.parent.scale = sides
+        slide(leans)
     stage.light().name = "Still lamp"
     lamp = stage.light(location=(1, 1, 3))
     lamp.name = "Lantern"
