@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from tiny_scenes import lambert, move, plane, quad, rgb, scene, veiled
 
-from addon.bindings.abi import Coordinate, Integrator, LobeKind, NodeKind, Pass, PassKind
+from addon.bindings.abi import CameraKind, Coordinate, Integrator, LobeKind, NodeKind, Pass, PassKind
 from addon.bindings.numbered_pass import NumberedPass
 from addon.bindings.session import Session
 from addon.bindings.snapshot import Instance, Lobe, Material, Node, NodeRef, Output, World
@@ -71,23 +71,42 @@ def test_passes_that_the_settings_do_not_count_are_left_out():
     assert read(shown(material), COLOR) == [[0.0, 0.0, 0.0, 0.0]]
 
 
-def test_the_world_gives_its_values_where_nodes_make_it():
-    """As in Cycles, a world of one colour gives none, nor one that a transparent film hides."""
+def test_the_world_gives_its_values():
+    """As in Cycles, one that a transparent film hides gives none."""
     nodes = (Node(NodeKind.COORDINATE, option=Coordinate.POSITION), Node(NodeKind.SEPARATE, option=2, inputs=(NodeRef(0),)))
     outputs = Output(value=(0.5, 0.25, 2.0)), Output(is_color=False, value=NodeRef(1))
-    sky = World(radiance=NodeRef(0), nodes=nodes, outputs=outputs)
-    given = {"samples": 4, "aov_colors": 1, "aov_values": 1}
-
-    def seen(world, **settings):
-        return read(
-            dataclasses.replace(scene([plane(0, move(z=5))], [lambert()], **given | settings), world=world), COLOR, VALUE
-        )
-
     # The pencil looks down.
-    assert seen(sky) == [[0.5, 0.25, 2.0, 1.0], [-1.0]]
-    assert seen(World(radiance=(1.0, 1.0, 1.0), outputs=outputs[:1])) == [[0.0] * 4, [0.0]]
-    assert seen(sky, film_transparent=True) == [[0.0] * 4, [0.0]]
-    assert seen(sky, film_transparent=True, passes=(Pass.ENVIRONMENT,)) == [[0.5, 0.25, 2.0, 1.0], [-1.0]]
+    given = [[0.5, 0.25, 2.0, 1.0], [-1.0]]
+
+    def seen(radiance, outputs, **settings):
+        sky = World(radiance=radiance, nodes=nodes, outputs=outputs)
+        # From 8 samples on, a picture is searched for pixels that show an even sky alone.
+        fields = {"samples": 8, "aov_colors": 1, "aov_values": 1, **settings}
+        return read(dataclasses.replace(scene([plane(0, move(z=5))], [lambert()], **fields), world=sky), COLOR, VALUE)
+
+    for radiance in (NodeRef(0), (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)):
+        assert seen(radiance, outputs) == given
+        assert seen(radiance, outputs[:1]) == [given[0], [0.0]]
+        assert seen(radiance, outputs, film_transparent=True) == [[0.0] * 4, [0.0]]
+        assert seen(radiance, outputs, film_transparent=True, passes=(Pass.ENVIRONMENT,)) == given
+
+
+def test_an_even_sky_gives_each_direction_its_value():
+    """No pixel shows a surface; the sides of the picture look apart."""
+    nodes = (Node(NodeKind.COORDINATE, option=Coordinate.POSITION),)
+    sky = World(radiance=(0.5, 0.5, 0.5), nodes=nodes, outputs=(Output(value=NodeRef(0)),))
+    behind = Instance(mesh=0, matrix=move(z=5.0), materials=(0,))
+    snapshot = scene([behind], [lambert()], meshes=[quad()], samples=8, aov_colors=1)
+    fields = {"kind": CameraKind.PERSPECTIVE, "width": 4, "region_width": 4, "window": (-1.0, 1.0, -0.25, 0.25)}
+    camera = dataclasses.replace(snapshot.camera, **fields)
+    with Session.upload(dataclasses.replace(snapshot, world=sky, camera=camera)) as session:
+        assert session.render_all()
+        x = session.read(COLOR)[0, :, 0]
+    # The mean over a pixel lies between the directions of its sides, in front of a plane at the distance 1; above and below its
+    # middle a direction is by up to 1 - 1 / sqrt(1 + 1 / 16) shorter.
+    sides = np.linspace(-1.0, 1.0, 5)
+    sides /= np.sqrt(1.0 + sides**2)
+    assert (sides[:-1] - 0.03 <= x).all() and (x <= sides[1:] + 0.03).all()
 
 
 def test_only_the_camera_sees_outputs():

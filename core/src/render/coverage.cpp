@@ -232,7 +232,7 @@ Background find_background(const Scene &scene, const Camera &camera, const Integ
 }
 
 bool has_even_background(const Scene &scene, const Camera &camera) {
-  if (camera.is_panorama() || camera.is_stereo() || scene.lights.environment().varies())
+  if (camera.is_panorama() || camera.is_stereo() || scene.lights.environment().varies() || !scene.world.output_nodes.empty())
     return false;
   for (uint32_t number = 0; number < scene.lights.lamps().size(); ++number)
     if (const DescribedLight lamp = describe(scene.lights.lamps()[number], number);

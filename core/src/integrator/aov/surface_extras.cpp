@@ -7,7 +7,7 @@ void add_sky_outputs(const Scene &scene, const Camera &camera, const IntegratorS
                      Extras &extras) {
   const WorldView &world = scene.world;
   const bool hidden = settings.film_transparent && !(settings.passes & bit(Pass::Environment));
-  if (world.outputs.empty() || !world.varies() || hidden || (world.hidden_from & RayKind::Camera))
+  if (world.outputs.empty() || hidden || (world.hidden_from & RayKind::Camera))
     return;
   scene.lights.environment().run_outputs(wi, values, &camera, &eye, path);
   for (const Output &output : world.outputs)
