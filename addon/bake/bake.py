@@ -12,6 +12,7 @@ from ..bindings.session import Scene, Session
 from ..bindings.texels import EMPTY, Texels
 from ..export.camera import camera_fields
 from ..export.scene import ExportOptions, export_scene
+from ..export.shutter import shutter_of
 from ..host import shared_scenes
 from ..host.priority import lowered
 from ..measure import render_report
@@ -60,6 +61,8 @@ class Bake:
                 self._tell(Messages.of_library(session.messages()))
                 schedule = self._render(session)
                 write_picture(result.layers[0], asked.picture(session.read))
+                place = f"texel of '{self._thing.original.name}'"
+                self._tell(render_report.left_out(dataclasses.asdict(session.statistics()), place))
                 if kind in _LIT and not self._is_over():
                     self._tell_error(session, schedule)
         finally:
@@ -74,6 +77,10 @@ class Bake:
             raise LancerError(f"scene '{scene.name}': only the integrator Path bakes, choose it in the render properties")
         if asked.kind == "COMBINED" and scene.lancer.use_denoising:
             messages.add(f"scene '{scene.name}': a bake is not denoised", severity=Severity.HINT)
+        shutter, now = shutter_of(scene, wants_vectors=False), scene.frame_current + scene.frame_subframe
+        if shutter is not None and shutter.middle != now:
+            theirs = f"that of Cycles the middle of the shutter, {shutter.middle:g}"
+            messages.add(f"scene '{scene.name}': a bake shows the frame {now:g}, {theirs}")
         # The roughness of the first surface alone.
         changes = {"film_transparent": True, "blended_features": True}
         changes["catchers"] = Catchers.APART if asked.kind == "SHADOW" else Catchers.OBJECTS

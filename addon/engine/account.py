@@ -6,8 +6,6 @@ import bpy
 
 from ..denoise import view_layer as denoise
 from ..measure import render_report
-from ..messages.messages import Messages
-from ..messages.severity import Severity
 from . import kept_pictures
 from .results import keep_costs, last_costs, last_statistics
 
@@ -45,12 +43,4 @@ def account(engine, scene, layer, session, schedule, denoised, uses):
     if bpy.app.background:
         for line in lines:
             engine.report({"INFO"}, f"Lancer: {line}")
-    return _of_invalid(numbers)
-
-
-def _of_invalid(numbers):
-    count = numbers["invalid_samples"]
-    if not count:
-        return Messages()
-    place = f"({numbers['invalid_x']}, {numbers['invalid_y']}), sample {numbers['invalid_sample']}"
-    return Messages([f"{count} samples were not finite and are left out, the first at pixel {place}"], Severity.WRONG)
+    return render_report.left_out(numbers)

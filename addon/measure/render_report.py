@@ -6,6 +6,8 @@ from enum import IntEnum
 
 from ..bindings.enums import Integrator
 from ..bindings.numbered_pass import extras
+from ..messages.messages import Messages
+from ..messages.severity import Severity
 from .schedule import CANCELLED, DENOISED_POWER, POWER, SAMPLES, TARGET, TIME
 
 # Shares of light below this are not reported.
@@ -62,6 +64,15 @@ def account(session, schedule):
     for name in ("low", "high", "cannot_exclude", *(name[len("error_") :] for name in REMOVED), "missing"):
         numbers[f"error_{name}"] = getattr(error, name)
     return numbers
+
+
+def left_out(numbers, place="pixel"):
+    """Return Messages about samples that were not finite. numbers: of the statistics; place: what the picture consists of."""
+    count = numbers["invalid_samples"]
+    if not count:
+        return Messages()
+    first = f"{place} ({numbers['invalid_x']}, {numbers['invalid_y']}), sample {numbers['invalid_sample']}"
+    return Messages([f"{count} samples were not finite and are left out, the first at {first}"], Severity.WRONG)
 
 
 def of_layers(statistics):

@@ -57,6 +57,13 @@ def test_meshes_are_those_of_blender(which, tmp_path):
 
 
 @both
+def test_a_bake_is_of_the_frame(which, tmp_path):
+    got = blenders.run(which, tmp_path, "bake_cases", "beside_the_frame")
+    assert got["CENTER"] == []
+    assert got["START"] == ["scene 'Scene': a bake shows the frame 1, that of Cycles the middle of the shutter, 1.25"]
+
+
+@both
 def test_renders_need_no_handlers(which, tmp_path):
     """They tell bakes and renders apart."""
     got = blenders.run(which, tmp_path, "bake_cases", "unannounced")

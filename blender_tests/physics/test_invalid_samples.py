@@ -164,3 +164,10 @@ def test_blender_tells_the_place(tmp_path):
 def test_a_case_that_does_not_say_so_may_drop_none(tmp_path):
     code, said, value = blenders.attempt(MODULE, tmp_path, "overflow_cases", "not_told")
     assert code != 0 and value is None and "samples were not finite" in said
+
+
+def test_a_bake_tells_the_texel(tmp_path):
+    got = blenders.run(MODULE, tmp_path, "overflow_cases", "baked")
+    assert got["finite"]
+    told = [text for text in got["messages"] if "not finite" in text]
+    assert len(told) == 1 and "samples were not finite and are left out, the first at texel of 'Floor' (" in told[0]

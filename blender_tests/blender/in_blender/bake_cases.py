@@ -4,6 +4,7 @@ import bpy
 import numpy as np
 import stage
 
+from addon.engine import last_messages
 from scenes import parts
 from scenes.parity import subdivisions
 
@@ -176,6 +177,19 @@ def divided():
     subdivisions.dice(scene, block, modifier, 1.0)
     ours, theirs = (_bake(scene, image, engine, "POSITION", 1) for engine in ("LANCER", "CYCLES"))
     return {"apart": float(np.abs(ours - theirs).max()), "level": float(np.abs(theirs[..., :3]).max())}
+
+
+def beside_the_frame():
+    """Return the messages of bakes with a shutter that opens around the frame, and at the frame."""
+    scene, _, material = _room()
+    image, told = _image(material), {}
+    scene.render.use_motion_blur, scene.render.motion_blur_shutter = True, 0.5
+    owner = scene.render if hasattr(scene.render, "motion_blur_position") else scene.cycles
+    for position in ("CENTER", "START"):
+        owner.motion_blur_position = position
+        _bake(scene, image, "LANCER", "EMIT", 1)
+        told[position] = list(last_messages.get(scene.name, ()))
+    return told
 
 
 def unannounced():

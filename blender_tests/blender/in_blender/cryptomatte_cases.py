@@ -8,9 +8,9 @@ import bpy
 import exr
 import numpy as np
 import stage
+from decoded_mattes import fields, mattes
 
 _KINDS = ("Object", "Material", "Asset")
-_FIELDS = ("name", "hash", "conversion")
 _SIZE, _SAMPLES = 32, 512
 
 
@@ -76,29 +76,6 @@ def _rendered(scene, engine):
     return exr.read(path), exr.attributes(path)
 
 
-def _fields(attributes, layer):
-    """Return the fields of one of the metadata's cryptomattes, by the layer that its field name tells."""
-    for key, value in attributes.items():
-        if key.startswith("cryptomatte/") and key.endswith("/name") and value == layer:
-            start = key[: -len("name")]
-            return {name: attributes[start + name] for name in (*_FIELDS, "manifest")}
-    raise KeyError(layer)
-
-
-def _mattes(pictures, title, manifest):
-    """Return {name: matte (height, width)} as a compositor decodes it."""
-    ranks = [pictures[name] for name in sorted(pictures) if name.startswith(title)]
-    found = {}
-    for name, key in manifest.items():
-        matte = np.zeros(ranks[0].shape[:2])
-        for rank in ranks:
-            for pair in (0, 2):
-                ids = np.ascontiguousarray(rank[..., pair]).view(np.uint32)
-                matte += np.where(ids == int(key, 16), rank[..., pair + 1], 0.0)
-        found[name] = matte
-    return found
-
-
 def both():
     """Return for each kind the mattes' differences between the engines, and the metadata."""
     scene = _scene()
@@ -106,15 +83,15 @@ def both():
     result = {"passes": sorted(name for name in files["LANCER"][0] if name.startswith("Crypto"))}
     result["passes of cycles"] = sorted(name for name in files["CYCLES"][0] if name.startswith("Crypto"))
     for kind in _KINDS:
-        title, decoded, fields = f"Crypto{kind}", {}, {}
+        title, decoded, told = f"Crypto{kind}", {}, {}
         for engine, (pictures, attributes) in files.items():
-            fields[engine] = _fields(attributes, f"ViewLayer.{title}")
-            names = json.loads(fields[engine]["manifest"])
-            decoded[engine] = _mattes(pictures, title, names)
+            told[engine] = fields(attributes, f"ViewLayer.{title}")
+            names = json.loads(told[engine]["manifest"])
+            decoded[engine] = mattes(pictures, title, names)
         ours, theirs = decoded["LANCER"], decoded["CYCLES"]
         result[kind] = {
             "fields": {
-                engine: {name: found[name] for name in ("name", "hash", "conversion")} for engine, found in fields.items()
+                engine: {name: found[name] for name in ("name", "hash", "conversion")} for engine, found in told.items()
             },
             "means": {name: [float(matte.mean()), float(theirs[name].mean())] for name, matte in ours.items()},
             "largest": {name: float(np.abs(matte - theirs[name]).max()) for name, matte in ours.items()},
@@ -154,7 +131,7 @@ def several():
         "layers": sorted(
             value for key, value in attributes.items() if key.startswith("cryptomatte/") and key.endswith("/name")
         ),
-        "overridden": json.loads(_fields(attributes, "Other.CryptoMaterial")["manifest"]),
+        "overridden": json.loads(fields(attributes, "Other.CryptoMaterial")["manifest"]),
         "first": bool(np.array_equal(plain, exr.read(path, "ViewLayer")["CryptoObject00"])),
     }
 
@@ -194,8 +171,8 @@ def by_the_node():
         scene.compositing_node_group = None
     scene.use_nodes = False
     pictures, attributes = _rendered(scene, "LANCER")
-    manifest = json.loads(_fields(attributes, "ViewLayer.CryptoObject")["manifest"])
-    decoded = _mattes(pictures, "CryptoObject", manifest)[name][::-1]
+    manifest = json.loads(fields(attributes, "ViewLayer.CryptoObject")["manifest"])
+    decoded = mattes(pictures, "CryptoObject", manifest)[name][::-1]
     return {"difference": float(np.abs(made - decoded).max()), "mean": float(made.mean())}
 
 
@@ -217,5 +194,5 @@ def many_names(count):
         started = time.monotonic()
         _, attributes = _rendered(scene, "LANCER")
         seconds.append(time.monotonic() - started)
-    manifest = _fields(attributes, "ViewLayer.CryptoObject")["manifest"]
+    manifest = fields(attributes, "ViewLayer.CryptoObject")["manifest"]
     return {"seconds": seconds, "names": len(json.loads(manifest)), "bytes": len(manifest)}
