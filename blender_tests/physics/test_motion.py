@@ -7,9 +7,10 @@ import pytest
 from significance import LEVEL, sidak, z_test
 from tiny_scenes import lambert, look_at, move, plane, quad, render, rotate_x, rotate_y, scale, scene, sphere, with_settings
 
-from addon.bindings.abi import CameraKind, LightKind, LobeKind, Pass, PixelFilter
+from addon.bindings.abi import CameraKind, Coordinate, LightKind, LobeKind, NodeKind, Pass, PixelFilter
+from addon.bindings.enums import VectorOperation
 from addon.bindings.session import Session
-from addon.bindings.snapshot import Camera, Instance, InstanceMotion, Light, Lobe, Material, MeshData, Motion
+from addon.bindings.snapshot import Camera, Instance, InstanceMotion, Light, Lobe, Material, MeshData, Motion, Node, NodeRef
 
 OPEN = np.ones(2, np.float32)
 GLOW = Material("glow", lobes=(), emission=(1.0, 1.0, 1.0))
@@ -71,6 +72,17 @@ def test_a_mesh_that_changes_its_shape_covers_its_share():
     moved = np.stack([mesh.positions + np.float32([x, 0, 0]) for x in (-2, 0, 2)])
     snapshot = snapshot.replaced(meshes=(dataclasses.replace(mesh, moved_positions=moved),), motion=Motion(shutter=OPEN))
     expect_shares(snapshot, shares(slides))
+
+
+def test_a_displaced_mesh_moves_with_its_shape_in_the_middle():
+    """As in Cycles. The material adds a quarter of the vertices' places in the world, which are aside in the middle."""
+    nodes = (
+        Node(NodeKind.COORDINATE, option=Coordinate.POSITION),
+        Node(NodeKind.VECTOR_MATH, VectorOperation.SCALE, inputs=(NodeRef(0), 0.0, 0.0, 0.25)),
+    )
+    stretched = dataclasses.replace(GLOW, nodes=nodes, displacement=NodeRef(1))
+    snapshot = moving(strip().replaced(materials=(stretched,)), 0, [move(-1), move(1), move(3)])
+    expect_shares(snapshot, shares(lambda x, t: np.abs(x - (4.0 * t - 0.75)) < 1.25))
 
 
 def test_a_camera_that_slides_sees_the_same():

@@ -32,8 +32,8 @@ public:
   Displacement(const Description &description, std::span<MeshView> views, std::span<const ObjectAttributeView> attributes,
                const BuildContext &context, const Move &move)
       : description_(description), context_(context), number_(move.instance), given_mesh_(move.given_mesh),
-        instance_(description.instances[number_]),
-        views_(views), geometry_{views, description.instances, description.object_infos, attributes} {}
+        views_(views), geometry_{views, description.instances, description.object_infos, attributes, description.keys},
+        instance_(geometry_.placed_at(number_, kMiddleTime, moved_)) {}
 
   // Returns the displaced mesh; the given one if no face is displaced.
   std::shared_ptr<const Mesh> run() {
@@ -193,9 +193,10 @@ private:
   const Description &description_;
   const BuildContext &context_;
   uint32_t number_, given_mesh_;
-  const Instance &instance_;
   std::span<MeshView> views_;
   const GeometryView geometry_;
+  Instance moved_;           // memory of instance_
+  const Instance &instance_; // in the middle of its motion
   Mesh mesh_;                // the displaced copy
   std::vector<bool> renews_; // per triangle: its material displaces, and its normals are recomputed
   bool keeps_ = false;       // some displaced triangle keeps its normals
