@@ -3,7 +3,7 @@
 import bpy
 import numpy as np
 
-from ..bindings.texels import DTYPE, EMPTY
+from ..bindings.texels import DTYPE
 
 _BY_ROWS = bpy.app.version < (4, 0)
 
@@ -14,8 +14,8 @@ def read_texels(layer, width, height):
     # Before 4.2 the first channel is a seed, and the weights are the last two.
     numbers, weights = (primitive[:, 1], primitive[:, 2:4]) if primitive.shape[1] == 4 else (primitive[:, 2], primitive[:, :2])
     rows = np.zeros(width * height, DTYPE)
-    triangles = np.ascontiguousarray(numbers).view(np.int32)
-    rows["triangle"] = np.where(triangles < 0, EMPTY, triangles)
+    # Blender's -1 of a texel without a surface has the bits of EMPTY.
+    rows["triangle"] = np.ascontiguousarray(numbers).view(np.uint32)
     rows["weights"] = np.clip(weights, 0.0, 1.0)
     # du/dx, du/dy, dv/dx, dv/dy.
     rows["dx"], rows["dy"] = differential[:, 0::2], differential[:, 1::2]
