@@ -29,10 +29,13 @@ _DATA_SAMPLES = 64
 
 
 class Bake:
-    """The job of engine.bake(). tell(messages): reports Messages; is_over(): whether the user has cancelled."""
+    """The job of engine.bake().
 
-    def __init__(self, engine, depsgraph, thing, tell, is_over):
-        self._engine, self._depsgraph, self._thing = engine, depsgraph, thing
+    number: of the image among those of the object; tell(messages): reports Messages; is_over(): whether the user has cancelled.
+    """
+
+    def __init__(self, engine, depsgraph, thing, number, tell, is_over):
+        self._engine, self._depsgraph, self._thing, self._number = engine, depsgraph, thing, number
         self._tell, self._is_over = tell, is_over
         self._shown = 0.0  # share of the texels that show the surface
 
@@ -42,7 +45,8 @@ class Bake:
         if asked is None:
             raise LancerError(f"baking of type {kind.title()} is not supported: choose another type, or bake with Cycles")
         self._engine.update_stats("", "Exporting")
-        result = self._engine.begin_result(0, 0, width, height, layer="bake\n")
+        # Blender finds the image of a result by the layer's name.
+        result = self._engine.begin_result(0, 0, width, height, layer=f"bake {self._number}")
         try:
             rows = read_texels(result.layers[0], width, height)
             self._shown = float(np.mean(rows["triangle"] != EMPTY))

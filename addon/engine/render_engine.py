@@ -70,6 +70,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
     _views = ()  # of the picture
     _shared = None  # the Scene of several views
     _viewport = None
+    _baked = 0  # images of an object
 
     def update_render_passes(self, scene=None, renderlayer=None):
         passes.register_passes(self, scene, renderlayer)
@@ -123,7 +124,8 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             self._picture = Picture((scene.name, scene.frame_current_final), ())
             last_messages.pop(scene, None)
         with render_job.baking():
-            job = Bake(self, depsgraph, object, lambda messages: self._tell(scene, messages), self._is_over)
+            job = Bake(self, depsgraph, object, self._baked, lambda messages: self._tell(scene, messages), self._is_over)
+            self._baked += 1
             self._guarded(scene, job.run, pass_type, pass_filter, width, height)
 
     def view_update(self, context, depsgraph):
