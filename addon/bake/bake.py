@@ -24,6 +24,8 @@ from .wanted import wanted
 
 _STEP = 0.05  # seconds between polls
 _LIT = frozenset({"COMBINED", "AO", "DIFFUSE", "GLOSSY", "TRANSMISSION", "SHADOW"})
+# Cycles bakes these of clear surfaces, too.
+_PLACES = frozenset({"POSITION", "NORMAL"})
 # Samples of passes without light: a texel's mean over its own area.
 _DATA_SAMPLES = 64
 
@@ -59,7 +61,7 @@ class Bake:
                 flags = shot.instances.flags.copy()
                 flags[baked] |= np.uint32(InstanceFlag.CATCHER)
                 shot.set("instances", shot.instances.replaced(flags=flags))
-            texels = Texels(rows, baked, _view(self._depsgraph.scene, kind))
+            texels = Texels(rows, baked, _view(self._depsgraph.scene, kind), asked.lacks)
             self._engine.update_stats("", "Building the scene")
             with lowered(lambda: self._session(shot, texels)) as session:
                 self._tell(Messages.of_library(session.messages()))
@@ -90,6 +92,8 @@ class Bake:
         changes["catchers"] = Catchers.APART if asked.kind == "SHADOW" else Catchers.OBJECTS
         if asked.bounces is not None:
             changes["max_bounces"] = asked.bounces
+        if asked.kind in _PLACES:
+            changes["alpha_threshold"] = 0.0
         if asked.kind in _LIT:
             # Empty texels have no error, and lower the mean of squares over all.
             changes["target_error"] = shot.settings.target_error * math.sqrt(self._shown)

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import bpy
 import numpy as np
 
-from ..bindings.enums import Pass
+from ..bindings.enums import BakeLacks, Pass
 from ..export.catchers import SOURCE
 
 _DATA = {
@@ -26,6 +26,7 @@ class Wanted(NamedTuple):
 
     kind: str  # bpy.ops.object.bake's type
     components: tuple = ()
+    lacks: BakeLacks = BakeLacks(0)
     direct: bool = False
     indirect: bool = False
     color: bool = False
@@ -55,9 +56,14 @@ class Wanted(NamedTuple):
         if self.whole:
             return read(Pass.COMBINED)
         rgb = self._sum(read)
-        is_solid = self.kind in _DATA or self.kind == "SHADOW"
-        alpha = np.ones((*rgb.shape[:2], 1), np.float32) if is_solid else read(Pass.COMBINED)[..., 3:]
+        alpha = np.ones((*rgb.shape[:2], 1), np.float32) if self._is_opaque else read(Pass.COMBINED)[..., 3:]
         return np.concatenate([rgb, alpha], axis=2)
+
+    @property
+    def _is_opaque(self):
+        """Whether Cycles bakes the alpha 1, also where there is no surface."""
+        one_part = self.direct != self.indirect and self.color and self.kind in _COMPONENTS
+        return self.kind in _DATA or self.kind == "SHADOW" or one_part
 
     def _sum(self, read):
         if self.kind == "SHADOW":
@@ -91,7 +97,17 @@ def wanted(kind, pass_filter):
 
     light = {"direct": has("DIRECT"), "indirect": has("INDIRECT")}
     if kind in _COMPONENTS:
-        return Wanted(kind, (kind,), **light, color=has("COLOR"))
-    components = tuple(name for name in _COMPONENTS if has(name))
-    whole = has("DIRECT", "INDIRECT", "EMIT", *_COMPONENTS)
-    return Wanted(kind, components, **light, color=True, emission=has("EMIT"), whole=whole)
+        return Wanted(kind, (kind,), _lacks(kind), **light, color=has("COLOR"))
+    lacks = _lacks(*(name for name in _COMPONENTS if has(name)))
+    # Glass has lobes of a component that is left out.
+    components = _COMPONENTS if any(light.values()) else ()
+    whole = all(light.values()) and has("EMIT")
+    return Wanted(kind, components, lacks, **light, color=True, emission=has("EMIT"), whole=whole)
+
+
+def _lacks(*components):
+    lacks = BakeLacks(0)
+    for name in _COMPONENTS:
+        if name not in components:
+            lacks |= BakeLacks[name]
+    return lacks

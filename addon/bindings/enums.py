@@ -656,3 +656,11 @@ class BakeView(IntEnum):
     ABOVE = 0
     CAMERA = 1
     SKY = 2
+
+
+class BakeLacks(IntFlag):
+    """Lobes that the baked surface lacks at first sight, bits; seen by rays it has them."""
+
+    DIFFUSE = 1
+    GLOSSY = 2
+    TRANSMISSION = 4

@@ -437,7 +437,7 @@ class Bake(Structure):
         ("texel_count", c_uint32),
         ("instance", c_uint32),
         ("view", c_uint32),
-        ("reserved", c_uint32),
+        ("lacks", c_uint32),
     ]
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import abi
-from .enums import BakeView
+from .enums import BakeLacks, BakeView
 
 DTYPE = np.dtype([("triangle", np.uint32), ("weights", np.float32, 2), ("dx", np.float32, 2), ("dy", np.float32, 2)])
 EMPTY = 0xFFFFFFFF  # triangle of a texel that shows nothing
@@ -19,11 +19,12 @@ class Texels:
     rows: np.ndarray
     instance: int
     view: BakeView = BakeView.ABOVE
+    lacks: BakeLacks = BakeLacks(0)
 
     def as_struct(self):
         """Return the struct, which refers to rows."""
         rows = np.ascontiguousarray(self.rows, DTYPE)
         address = ctypes.cast(rows.ctypes.data, ctypes.POINTER(abi.Texel))
-        struct = abi.Bake(address, rows.size, int(self.instance), int(self.view))
+        struct = abi.Bake(address, rows.size, int(self.instance), int(self.view), int(self.lacks))
         struct.rows = rows
         return struct

@@ -4,9 +4,9 @@ import dataclasses
 
 import numpy as np
 import pytest
-from tiny_scenes import lambert, look_at, move, plane, quad, rotate_y, scene
+from tiny_scenes import lambert, look_at, move, plane, quad, rotate_x, rotate_y, scene, veiled
 
-from addon.bindings.abi import BakeView, Catchers, InstanceFlag, LancerError, LightKind, LobeKind, Pass, PassKind
+from addon.bindings.abi import BakeLacks, BakeView, Catchers, InstanceFlag, LancerError, LightKind, LobeKind, Pass, PassKind
 from addon.bindings.numbered_pass import NumberedPass
 from addon.bindings.session import Scene, Session
 from addon.bindings.snapshot import Camera, Instance, InstanceTable, Light, Lobe, Material
@@ -16,7 +16,7 @@ SIZE = 8
 SIDE = 2.0
 
 
-def texels(size=SIZE, instance=0, view=BakeView.ABOVE):
+def texels(size=SIZE, instance=0, view=BakeView.ABOVE, lacks=0):
     """Return Texels that map a quad of two triangles, corners (0, 1, 2) and (0, 2, 3), onto an image."""
     middle = (np.arange(size) + 0.5) / size
     u, v = np.meshgrid(middle, middle)
@@ -28,7 +28,7 @@ def texels(size=SIZE, instance=0, view=BakeView.ABOVE):
     step = 1.0 / size
     rows["dx"] = np.where(lower[..., None], [-step, step], [0.0, step])
     rows["dy"] = np.where(lower[..., None], [0.0, -step], [-step, 0.0])
-    return Texels(rows, instance, view)
+    return Texels(rows, instance, view, lacks)
 
 
 def places(size=SIZE):
@@ -142,11 +142,70 @@ def test_a_view_from_the_camera_mirrors_the_other_side():
     assert bake(snapshot, texels())[..., :3].max() == 0.0
 
 
+def under_an_even_sky(*lobes):
+    material = Material("mixed", lobes=lobes)
+    return scene([Instance(mesh=0, materials=(0,))], [material], meshes=[quad(SIDE)], world=1.0, samples=16)
+
+
+# Smooth glass: a part of the light is mirrored and the rest refracted, half of the whole in all.
+GLASS = Lobe(LobeKind.GLASS, color=(0.5,) * 3, ior=1.5, roughness=0.0)
+
+
+@pytest.mark.parametrize(
+    ("lacks", "level"),
+    [
+        (BakeLacks(0), 0.3 + 0.2),
+        (BakeLacks.DIFFUSE, 0.2),
+        (BakeLacks.GLOSSY, 0.3),
+        (BakeLacks.TRANSMISSION, 0.3 + 0.2),
+        (BakeLacks.DIFFUSE | BakeLacks.GLOSSY, 0.0),
+    ],
+)
+def test_a_surface_lacks_the_lobes_that_are_left_out(lacks, level):
+    """Every lobe shows the sky's light times its colour: single samples, and their mean, have that value, but for rounding.
+
+    A path takes one of both lobes, by their shares of the light.
+    """
+    lobes = (Lobe(LobeKind.LAMBERT, color=(0.3,) * 3), Lobe(LobeKind.MIRROR, color=(0.2,) * 3))
+    np.testing.assert_allclose(bake(under_an_even_sky(*lobes), texels(lacks=lacks))[..., :3], level, rtol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("lacks", "level"),
+    [(BakeLacks.GLOSSY, 0.5), (BakeLacks.TRANSMISSION, 0.5), (BakeLacks.GLOSSY | BakeLacks.TRANSMISSION, 0.0)],
+)
+def test_glass_is_left_out_as_a_whole(lacks, level):
+    np.testing.assert_allclose(bake(under_an_even_sky(GLASS), texels(lacks=lacks))[..., :3], level, rtol=1e-5)
+
+
+def test_rays_meet_the_lobes_that_are_left_out():
+    """A mirror below a lit wall of the same material shows the wall's diffuse lobe."""
+    lobes = (Lobe(LobeKind.LAMBERT, color=(0.5,) * 3), Lobe(LobeKind.MIRROR, color=(0.5,) * 3))
+    wall = move(z=2.0) @ rotate_x(np.pi)
+    instances = [Instance(mesh=0, materials=(0,)), Instance(mesh=1, materials=(0,), matrix=wall)]
+    lamp = Light("lamp", move(z=1.0), LightKind.POINT, emission=(1.0,) * 3)
+    snapshot = scene(instances, [Material("mixed", lobes=lobes)], [lamp], meshes=[quad(SIDE), quad(8.0)], samples=4)
+    snapshot = snapshot.replaced(settings=dataclasses.replace(snapshot.settings, max_bounces=1))
+    assert bake(snapshot, texels(lacks=BakeLacks.DIFFUSE))[..., 0].min() > 0.0
+
+
+def test_what_passes_straight_is_a_hole():
+    """Of a surface with an opacity of 3/4 no texel shows the glow behind it; all lack a quarter of their alpha."""
+    glow = Material("glow", lobes=(), emission=(5.0,) * 3)
+    behind = Instance(mesh=0, materials=(1,), matrix=move(z=-1.0))
+    instances = [Instance(mesh=0, materials=(0,)), behind]
+    snapshot = scene(instances, [veiled(lambert(0.5), 0.75), glow], meshes=[quad(SIDE)], world=1.0, samples=16)
+    found = bake(snapshot, texels())
+    np.testing.assert_allclose(found[..., :3], 0.5 * 0.75, rtol=1e-5)
+    np.testing.assert_allclose(found[..., 3], 0.75, rtol=1e-6)
+
+
 @pytest.mark.parametrize(
     ("change", "says"),
     [
         (lambda asked: dataclasses.replace(asked, rows=asked.rows[:4]), "texels"),
         (lambda asked: dataclasses.replace(asked, view=9), "view"),
+        (lambda asked: dataclasses.replace(asked, lacks=8), "lacks"),
     ],
 )
 def test_what_fits_no_picture_is_refused(change, says):

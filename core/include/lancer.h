@@ -1246,6 +1246,10 @@ enum lancer_bake_view {
   LANCER_BAKE_SKY = 2     /* not at the surface: from the world's origin to the place, at the environment */
 };
 
+/* Lobes that the baked surface lacks at first sight, bits; seen by rays it has them. As in Cycles, glass is left out where
+ * GLOSSY and TRANSMISSION are, and light that enters the surface never. */
+enum lancer_bake_lacks { LANCER_BAKE_LACKS_DIFFUSE = 1, LANCER_BAKE_LACKS_GLOSSY = 2, LANCER_BAKE_LACKS_TRANSMISSION = 4 };
+
 /* A texel of an image that shows the surface of a mesh. */
 typedef struct lancer_texel {
   uint32_t triangle; /* number of a triangle of the mesh; one that the mesh lacks: the texel is empty, and black with alpha 0 */
@@ -1260,7 +1264,7 @@ typedef struct lancer_bake {
   uint32_t texel_count;       /* the camera's width times its height */
   uint32_t instance;          /* its number in order of adding; a mesh. All texels of one that was left out are empty */
   uint32_t view;              /* LANCER_BAKE_* */
-  uint32_t reserved;
+  uint32_t lacks;             /* LANCER_BAKE_LACKS_*, added */
 } lancer_bake;
 /* As lancer_session_create, for a session whose samples begin on a surface: its passes are those of a picture whose pixels see
  * their texels. PATH only. Each sample takes a random place of its texel on its triangle. Of the camera, its size counts, its

@@ -1,5 +1,5 @@
-// Lobes as the limits of a path change them: caustics left out, glossy lobes blurred. As in Cycles, energy and albedo stay
-// those of the lobes before; a layer that is left out dims nothing below it.
+// Lobes as the limits of a path change them: caustics or whole components left out, glossy lobes blurred. As in Cycles, energy
+// and albedo stay those of the lobes before; a layer that is left out dims nothing below it.
 #pragma once
 
 #include "bsdf/ashikhmin.h"
@@ -15,6 +15,9 @@ template <class F> struct LobeLimits {
   bool lacks_reflections = false, lacks_refractions = false;
   MaskOf<F> only_caustics = uniform<F>(false);
   F least_alpha{0.0f}; // of facets; 0: none
+  uint32_t lacks = 0;  // bits of components that are absent in all lanes
+
+  LANCER_LANE bool any() const { return caustics || blurs || lacks != 0; }
 };
 
 template <class F> LANCER_LANE void remove(Lobe<F> &lobe, const MaskOf<F> &gone) {
@@ -41,6 +44,16 @@ template <class F> LANCER_LANE void leave_out_caustics(Lobe<F> &lobe, const Lobe
   remove(lobe, mirrors ? no_mirror : facets ? no_glass : limits.only_caustics);
 }
 
+constexpr uint32_t component_bit(Component component) { return 1u << static_cast<uint32_t>(component); }
+
+template <class F> LANCER_LANE void leave_out_components(Lobe<F> &lobe, uint32_t lacks) {
+  const bool glass = lobe.shape == LobeShape::Microfacet && reflects(lobe) && refracts(lobe);
+  const uint32_t own =
+      glass ? component_bit(Component::Glossy) | component_bit(Component::Transmission) : component_bit(lobe.component);
+  if ((lacks & own) == own && lobe.shape != LobeShape::Subsurface)
+    remove(lobe, uniform<F>(true));
+}
+
 template <class F> LANCER_LANE void blur(Lobe<F> &lobe, F least_alpha) {
   const bool facets = lobe.shape == LobeShape::Microfacet;
   if (!facets && lobe.shape != LobeShape::Ashikhmin)
@@ -57,6 +70,8 @@ template <class F> LANCER_LANE void blur(Lobe<F> &lobe, F least_alpha) {
 // Changes the lobes of a BSDF before complete().
 template <class F> LANCER_LANE void limit_lobes(Bsdf<F> &bsdf, const LobeLimits<F> &limits) {
   for (int i = 0; i < bsdf.count; ++i) {
+    if (limits.lacks)
+      leave_out_components(bsdf.lobes[i], limits.lacks);
     if (limits.caustics)
       leave_out_caustics(bsdf.lobes[i], limits);
     if (limits.blurs)

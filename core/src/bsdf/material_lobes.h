@@ -263,7 +263,7 @@ LANCER_LANE void find_lobes(const MaterialView *const *materials, const Values &
     add_described<F>(materials, i, values, hole, bsdf);
   if (paths.leaving)
     leave_below(bsdf, material.lobes.empty() ? Rules::Blender45 : material.lobes.front().rules, paths.dimmed);
-  if (paths.limits.caustics || paths.limits.blurs)
+  if (paths.limits.any())
     limit_lobes(bsdf, paths.limits);
   bsdf.complete();
 }

@@ -49,7 +49,10 @@ Bake read_bake(const lancer_bake &source, const Scene &scene, const Camera &came
     bad_argument("bake: texels is NULL");
   if (source.view > LANCER_BAKE_SKY)
     bad_argument("bake: view " + std::to_string(source.view) + " is not one of 0 ... " + std::to_string(LANCER_BAKE_SKY));
-  Bake result{.instance = index_of(scene, source.instance), .view = BakeView(source.view), .texels = {}};
+  constexpr uint32_t all = LANCER_BAKE_LACKS_DIFFUSE | LANCER_BAKE_LACKS_GLOSSY | LANCER_BAKE_LACKS_TRANSMISSION;
+  if (source.lacks & ~all)
+    bad_argument("bake: lacks " + std::to_string(source.lacks) + " has unknown bits");
+  Bake result{.instance = index_of(scene, source.instance), .view = BakeView(source.view), .lacks = source.lacks, .texels = {}};
   result.texels.resize(count);
   if (result.instance == kNone)
     return result;

@@ -276,7 +276,10 @@ void PathIntegrator::shade_block() {
       outputs_wanted != 0);
   each_lane(outputs_wanted, [&](uint32_t lane) { film_.add_outputs(path_of(lane), surface_, lane); });
   cut_holdouts();
+  surface_.lack(at_texels_ ? settings_.bake->lacks : 0);
   surface_.build_lobes();
+  if (at_texels_)
+    cut_transparency();
   // Fill the passes, and add the light that the surfaces emit.
   occlusion_asked_ = film_.record(surface_, queue_.paths, path_, ends_, nothing_);
   for (uint32_t lane = 0; lane < count; ++lane)
@@ -300,6 +303,13 @@ void PathIntegrator::cut_holdouts() {
   const SurfaceStage::Holes holes = surface_.cut_holdouts(seen);
   each_lane(holes.cut, [&](uint32_t lane) { film_.cut(path_of(lane), surface_.cut_alpha(lane, path_of(lane).beta)); });
   nothing_ = holes.nothing;
+}
+
+// Makes holes of what passes straight through the surface of a bake, as Cycles does.
+void PathIntegrator::cut_transparency() {
+  for (uint32_t lane = 0; lane < surface_.count(); ++lane)
+    film_.cut(path_of(lane), mean(surface_.transmittance(lane)));
+  surface_.stop_straight();
 }
 
 // Adds the light that a surface emits, weighted against light samples, and its denoising guides.

@@ -89,6 +89,7 @@ private:
   void shade_block();
   void leave();
   void cut_holdouts();
+  void cut_transparency();
   void add_emission(uint32_t lane);
   void split();
   void light();

@@ -55,6 +55,7 @@ struct alignas(64) MaterialBlock {
   bool no_reflections = false, no_refractions = false, blurs = false; // the settings
   uint32_t no_caustics = 0, only_caustics = 0;
   Floats least_alpha;
+  uint32_t lacks = 0;   // bits of components whose lobes are absent; by lack()
   bool shares = false;  // diffuse and glossy shares of light are wanted
   bool spreads = false; // the spread of rays is wanted, for images with mipmaps
 };
@@ -136,6 +137,8 @@ public:
     materials_.only_caustics |= uint32_t{only_caustics} << lane;
     materials_.least_alpha[lane] = least_alpha;
   }
+  // Leaves the lobes of these components out of a block, bits.
+  void lack(uint32_t components) { materials_.lacks = components; }
   // Sets the key of the random numbers by which the lobes of a lane estimate their values, where the material has any such.
   void set_key(uint32_t lane, uint32_t key) { materials_.key[lane] = key; }
   // Lets nodes look around by these rays, which must outlive the stage.
@@ -171,6 +174,8 @@ public:
   // Shows all surfaces as opaque in transmittance(); the lobes' share of paths that pass straight through stays.
   void make_opaque();
   void build_lobes();
+  // Lets no path of the block pass straight on; transmittance() stays.
+  void stop_straight() { std::fill_n(lobes_.pass, kBlockLanes, 0.0f); }
   // Computes the means of the lobes that passes need; means() and mixture() are those of the last call.
   void describe();
   void clear();

@@ -83,6 +83,7 @@ LobeLimits<F> limits_of(const MaterialBlock &materials, int first) {
   limits.lacks_refractions = materials.no_refractions;
   limits.caustics = (materials.no_caustics | materials.only_caustics) != 0;
   limits.blurs = materials.blurs;
+  limits.lacks = materials.lacks;
   if (limits.caustics) {
     const M lacking = some(materials.no_caustics, first), none = mask_of(0);
     limits.no_reflections = materials.no_reflections ? lacking : none;
