@@ -83,7 +83,7 @@ class Bake:
             raise LancerError(f"scene '{scene.name}': only the integrator Path bakes, choose it in the render properties")
         if asked.kind == "COMBINED" and scene.lancer.use_denoising:
             messages.add(f"scene '{scene.name}': a bake is not denoised", severity=Severity.HINT)
-        shutter, now = shutter_of(scene, wants_vectors=False), scene.frame_current + scene.frame_subframe
+        shutter, now = shutter_of(scene, self._depsgraph.view_layer, ()), scene.frame_current + scene.frame_subframe
         if shutter is not None and shutter.middle != now:
             theirs = f"that of Cycles the middle of the shutter, {shutter.middle:g}"
             messages.add(f"scene '{scene.name}': a bake shows the frame {now:g}, {theirs}")

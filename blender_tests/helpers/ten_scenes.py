@@ -169,6 +169,15 @@ TEN = (everything, smooth_meshes, crowd, glass, closed_room, many_lamps, princip
 # ---- other sizes and places ----
 
 
+_OF_CAMERA = ("matrix", "matrix_before", "matrix_after")
+
+
+def _placed(table, placed):
+    """Return an InstanceTable whose matrices, and those of the frames around, are changed by placed(matrices)."""
+    vectors = table.vectors and dataclasses.replace(table.vectors, matrices=placed(table.vectors.matrices))
+    return dataclasses.replace(table, matrices=placed(table.matrices), vectors=vectors)
+
+
 def resized(shot, factor):
     """Return the scene with all lengths times factor, and lamps scaled for equal irradiance. The factor is a float."""
 
@@ -199,13 +208,17 @@ def resized(shot, factor):
     window = factor if eye.kind == CameraKind.ORTHOGRAPHIC else 1.0
     return dataclasses.replace(
         shot,
-        instances=dataclasses.replace(shot.instances, matrices=shot.instances.matrices * factor),
+        instances=_placed(shot.instances, lambda matrices: matrices * factor),
         lights=tuple(lamp(light) for light in shot.lights),
         materials=tuple(look(material) for material in shot.materials),
         camera=dataclasses.replace(
             eye,
             matrix=larger(eye.matrix),
+            matrix_before=larger(eye.matrix_before),
+            matrix_after=larger(eye.matrix_after),
             window=tuple(window * w for w in eye.window),
+            window_before=tuple(window * w for w in eye.window_before),
+            window_after=tuple(window * w for w in eye.window_after),
             clip_start=factor * eye.clip_start,
             clip_end=factor * eye.clip_end,
             lens_radius=factor * eye.lens_radius,
@@ -238,7 +251,11 @@ def moved(shot, offset):
 
     return dataclasses.replace(
         shot,
-        instances=dataclasses.replace(shot.instances, matrices=there(shot.instances.matrices)),
+        instances=_placed(shot.instances, there),
         lights=tuple(dataclasses.replace(light, matrix=there(light.matrix)) for light in shot.lights),
-        camera=dataclasses.replace(shot.camera, matrix=there(shot.camera.matrix)),
+        camera=dataclasses.replace(
+            shot.camera,
+            # A camera that stands still has zeros for the frames around.
+            **{name: there(matrix) for name in _OF_CAMERA if (matrix := getattr(shot.camera, name)).any()},
+        ),
     )
