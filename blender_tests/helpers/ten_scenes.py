@@ -239,7 +239,12 @@ def resized_meshes(shot, factor):
     is_mesh = (shot.instances.kinds == InstanceKind.MESH)[:, None, None]
     linear = np.where(is_mesh, shot.instances.matrices[..., :3], larger.instances.matrices[..., :3])
     matrices = np.concatenate([linear, larger.instances.matrices[..., 3:]], axis=2)
-    meshes = tuple(dataclasses.replace(m, positions=np.float32(factor) * m.positions) for m in shot.meshes)
+
+    def mesh(m):
+        frames = None if m.vector_positions is None else np.float32(factor) * m.vector_positions
+        return dataclasses.replace(m, positions=np.float32(factor) * m.positions, vector_positions=frames)
+
+    meshes = tuple(map(mesh, shot.meshes))
     return dataclasses.replace(larger, meshes=meshes, instances=dataclasses.replace(larger.instances, matrices=matrices))
 
 

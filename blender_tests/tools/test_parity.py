@@ -248,7 +248,7 @@ _SHARES = {
     "lights": "lights_*",
     "materials": "materials_*,textures_*,point_density",
     "nodes": "inputs,inputs_objects,inputs_instances,inputs_places,zones,zones_bundles,left_out,settings_of_nodes,looking",
-    "others": "objects,subdivisions,subdivisions_inputs,cameras,passes_*,worlds,skies,films,catchers,motion,light_paths,fast_gi",
+    "others": "objects,subdivisions*,cameras,passes_*,worlds,skies,films,catchers,motion,light_paths,fast_gi",
 }
 
 

@@ -93,8 +93,8 @@ void PathIntegrator::shade() {
     } else {
       if (film_.wants_outputs(queue_.paths[i]))
         film_.add_sky_outputs(queue_.paths[i], queue_.rays[i], queue_.from[i].p);
-      if (film_.miss(queue_.paths[i], queue_.rays[i]) &&
-          queue_.paths[i].shows_light(hidden_of_catcher(scene_.world.hidden_from)))
+      const bool shown = queue_.paths[i].shows_light(hidden_of_catcher(scene_.world.hidden_from));
+      if (film_.miss(queue_.paths[i], queue_.rays[i]) && shown)
         missed_.push_back(i);
     }
   add_environment();
