@@ -24,7 +24,7 @@ def _shadow(scene, surface=None):
     return ground
 
 
-@variants(values={"opaque": False, "transparent": True}, quick=True)
+@variants(values={"opaque": (False, {"quick": True}), "transparent": True})
 def catcher_film(scene, transparent):
     """Before the sky, or in the alpha of a transparent film."""
     _shadow(scene)
