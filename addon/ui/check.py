@@ -4,7 +4,7 @@ import bpy
 
 from ..checks.finding import Severity, shortened, told
 from ..operators import check_scene
-from .render import LancerRenderPanel, draw_measuring
+from .panel import LancerRenderPanel, draw_measuring
 from .sentences import sentence
 
 _CHECK = "lancer.check_scene"

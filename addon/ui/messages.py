@@ -6,7 +6,7 @@ from .. import engine
 from ..measure import render_report
 from ..messages.severity import Severity
 from ..viewport import viewport
-from .render import LancerRenderPanel
+from .panel import LancerRenderPanel
 from .sentences import sentence
 
 

@@ -1,6 +1,7 @@
 """Base of Lancer's panels."""
 
 from ..engine.render_engine import LancerRenderEngine
+from ..operators import measuring
 
 ID = LancerRenderEngine.bl_idname
 
@@ -21,6 +22,12 @@ class LancerPanel:
         self.layout.use_property_split = True
         self.layout.use_property_decorate = animated
         return self.layout.column()
+
+
+class LancerRenderPanel(LancerPanel):
+    """A panel of the Render tab, where panels appear in the order of registration, before those that Lancer adopts."""
+
+    bl_context = "render"
 
 
 def uses_classic(scene):
@@ -55,3 +62,13 @@ def nodes_of(column, tree, kind):
         column.label(text="No output node", icon="ERROR")
     else:
         column.template_node_view(tree, output, output.inputs[kind])
+
+
+def draw_measuring(column, scene, operator, doing="Measuring"):
+    """Draw the progress of a running operator instead of its button; return False if it does not run."""
+    what, fraction, text = measuring.running.get(scene.name, ("", 0.0, ""))
+    if what != operator:
+        return False
+    column.label(text=f"{doing}, {fraction * 100:.0f} % (Esc stops)", icon="TIME")
+    column.label(text=text)
+    return True

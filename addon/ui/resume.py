@@ -6,7 +6,7 @@ from ..bindings.abi import LancerError
 from ..engine import resume, resume_file
 from ..measure.render_report import duration
 from ..operators.delete_resume_files import LANCER_OT_delete_resume_files
-from .render import LancerRenderPanel
+from .panel import LancerRenderPanel
 from .sentences import sentence
 
 _WHAT = (

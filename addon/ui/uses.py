@@ -5,7 +5,7 @@ import bpy
 from .. import engine
 from ..measure.scene_features import kernel_in_words
 from ..operators import measure_features
-from .render import LancerRenderPanel, draw_measuring
+from .panel import LancerRenderPanel, draw_measuring
 from .sentences import sentence
 
 _MEASURE = "lancer.measure_features"
