@@ -219,18 +219,14 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         if shutter is not None:
             # The updates of a depsgraph that is evaluated at several times do not tell what has changed.
             parts = begin = None
-        frames = []
-        look = views.look(self, depsgraph, shutter, frames)
-        options = ExportOptions(self.camera_override, sources, None if parts else kept, parts, begin, shutter=shutter, **look)
+        sight = views.sight_of(self, depsgraph)
+        reuse = {"kept": None if parts else kept, "parts": parts, "on_mesh": begin}
+        options = ExportOptions(self.camera_override, sources, **reuse, shutter=shutter, sight_of_views=sight)
         self._snapshot, messages = export_picture(depsgraph, options, self.frame_set, self._is_over)
         if parts is not None:
             self._following.give_back(parts)
             kept.count_parts(self._snapshot, parts)
-        self._views = views.views(self, depsgraph, self._snapshot.camera, messages, frames)
-        motion = self._snapshot.motion
-        if self._views[0].name and motion is not None and motion.keys:
-            messages.add("with stereoscopy the motion of the camera is not blurred", "feature:camera motion with stereoscopy")
-            self._snapshot.set("motion", dataclasses.replace(motion, keys=()))
+        self._views = (views.View("", self._snapshot.camera),) if sight is None else sight.views(messages)
         settings = self._snapshot.settings
         time_limit = self._picture.limit(settings.time_limit) / len(self._views)
         settings = dataclasses.replace(settings, time_limit=time_limit)
@@ -274,11 +270,15 @@ class LancerRenderEngine(bpy.types.RenderEngine):
 
     def _render_views(self, scene, layer, wanted, denoising, machines):
         snapshot = self._snapshot
+        moves = any(view.keys for view in self._views)
         try:
             for view in self._views:
                 if view.name:
                     self.active_view_set(view.name)
-                    self._snapshot = snapshot.replaced(camera=view.camera)
+                    self._snapshot = view.shown(snapshot)
+                    if moves:
+                        # The motion of the camera is the scene's.
+                        self._close_shared()
                     # Each view has samples of its own.
                     self._resume = self._resume and resume.wanted(scene, f"{layer} {view.name}")
                 elif len(self._views) == 1:
@@ -288,9 +288,12 @@ class LancerRenderEngine(bpy.types.RenderEngine):
                 if self._is_over():
                     break
         finally:
-            if self._shared is not None:
-                self._shared.close()
-                self._shared = None
+            self._close_shared()
+
+    def _close_shared(self):
+        if self._shared is not None:
+            self._shared.close()
+            self._shared = None
 
     def _render(self, scene, layer, wanted, denoising, machines, view):
         with self._opened(scene, layer, machines) as session:

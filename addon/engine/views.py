@@ -1,5 +1,6 @@
 """The views of a picture: one, or with stereoscopy one for each eye or camera."""
 
+import dataclasses
 from typing import NamedTuple
 
 import numpy as np
@@ -12,32 +13,42 @@ from ..messages.messages import Messages
 class View(NamedTuple):
     name: str  # as Blender's result has it; "" without stereoscopy
     camera: object  # the snapshot.Camera
+    keys: tuple = ()  # of a moving camera: snapshot.Cameras while the shutter is open, see snapshot.Motion
+
+    def shown(self, snapshot):
+        """Return a SceneSnapshot through the camera of this view."""
+        motion = snapshot.motion and dataclasses.replace(snapshot.motion, keys=self.keys)
+        return snapshot.replaced(camera=self.camera, motion=motion)
 
 
-def views(engine, depsgraph, camera, messages, frames=()):
-    """Return the Views of a picture in Blender's order. camera: the snapshot.Camera of a picture without stereoscopy.
+class Sight:
+    """The cameras of a picture with several views, for an export that reads them at other times, too."""
 
-    frames: of each view the snapshot.Cameras one frame before and one after, from an export with look().
-    """
-    if not depsgraph.scene.render.use_multiview:
-        return (View("", camera),)
-    owners = _owners(engine, depsgraph)
-    cameras = _cameras(engine, depsgraph, owners, messages)
-    if frames:
-        cameras = [
-            camera_in_frames(now, around, owner, messages)
-            for now, around, owner in zip(cameras, frames, owners.values(), strict=True)
-        ]
-    return tuple(map(View, owners, cameras))
+    def __init__(self, engine, depsgraph):
+        self._engine, self._depsgraph = engine, depsgraph
+        # As in Cycles, a marker of another frame changes no camera.
+        self._owners = _owners(engine, depsgraph)
+        self.owners = tuple(self._owners.values())
+        self.frames = ()  # for the pass Vector: of each view the snapshot.Cameras one frame before and one after
+        self.keys = ()  # with motion blur: of each view those at the keys, none where it stands still
+
+    def cameras(self, messages=None):
+        """Return the snapshot.Camera of each view as the depsgraph is evaluated."""
+        messages = Messages() if messages is None else messages
+        return [_camera(self._engine, name, self._depsgraph, owner, messages) for name, owner in self._owners.items()]
+
+    def views(self, messages):
+        """Return the Views in Blender's order, once the export has ended."""
+        cameras = self.cameras(messages)
+        if self.frames:
+            around = zip(cameras, self.frames, self.owners, strict=True)
+            cameras = [camera_in_frames(now, frames, owner, messages) for now, frames, owner in around]
+        return tuple(map(View, self._owners, cameras, self.keys or ((),) * len(cameras)))
 
 
-def look(engine, depsgraph, shutter, frames):
-    """Return the fields of ExportOptions that make an export for vectors read the cameras of all views into the list frames."""
-    if not depsgraph.scene.render.use_multiview or shutter is None or shutter.blurs:
-        return {}
-    # As in Cycles, a marker of another frame changes no camera.
-    owners = _owners(engine, depsgraph)
-    return {"views": lambda: _cameras(engine, depsgraph, owners, Messages()), "on_views": frames.extend}
+def sight_of(engine, depsgraph):
+    """Return the Sight of a picture; None without stereoscopy."""
+    return Sight(engine, depsgraph) if depsgraph.scene.render.use_multiview else None
 
 
 def _owners(engine, depsgraph):
@@ -52,11 +63,6 @@ def _owners(engine, depsgraph):
         engine.active_view_set(name)
         owners[name] = engine.camera_override or scene.camera
     return owners
-
-
-def _cameras(engine, depsgraph, owners, messages):
-    """Return the snapshot.Camera of each view as the depsgraph is evaluated."""
-    return [_camera(engine, name, depsgraph, owner, messages) for name, owner in owners.items()]
 
 
 def _camera(engine, name, depsgraph, camera, messages):

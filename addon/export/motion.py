@@ -70,6 +70,9 @@ class MotionReader:
         self._instants = {}
         self._find_movers(middle)
         self._camera_count = key_count(camera.original, camera.original, options.shutter)
+        self._sight = options.sight_of_views
+        owners = () if self._sight is None else self._sight.owners
+        self._view_counts = [key_count(owner.original, owner.original, options.shutter) for owner in owners]
 
     def _find_movers(self, middle):
         row_of = {int(entry): row for row, entry in enumerate(self._places.entries)}
@@ -96,7 +99,7 @@ class MotionReader:
 
     def times(self):
         """Return the relative times at which something is to be read, the middle first."""
-        counts = {*np.unique(self._counts).tolist(), self._camera_count} - {0}
+        counts = {*np.unique(self._counts).tolist(), self._camera_count, *self._view_counts} - {0}
         return sorted({time for count in counts for time in relative_times(count)}, key=lambda time: (time != 0.0, time))
 
     def take(self, relative, instant):
@@ -104,7 +107,7 @@ class MotionReader:
         wanted = {self._keys[row].tobytes() for row in self._owners.values()}
         if instant is None or not wanted <= instant.shapes.keys() or instant.camera is None:
             return False
-        if self._options.views is not None and instant.views is None:
+        if self._sight is not None and instant.views is None:
             return False
         self._instants[relative] = instant
         return True
@@ -114,8 +117,8 @@ class MotionReader:
         obey()
         instant = self._instants[relative] = Instant(self._depsgraph, self._places)
         instant.camera = export_camera(self._camera, self._depsgraph, Messages())
-        if self._options.views is not None:
-            instant.views = self._options.views()
+        if self._sight is not None:
+            instant.views = self._sight.cameras()
         wanted = {self._keys[row].tobytes() for row in self._owners.values()}
         if not wanted:
             return instant
@@ -139,19 +142,17 @@ class MotionReader:
         meshes = list(snapshot.meshes)
         for number, _, (before, _, after) in self._shapes(meshes, messages):
             meshes[number] = mesh_in_frames(meshes[number], (before, after))
-        if self._options.views is not None:
-            self._options.on_views(tuple(zip(*(frame.views for frame in frames), strict=True)))
+        if self._sight is not None:
+            self._sight.frames = tuple(zip(*(frame.views for frame in frames), strict=True))
         camera = camera_in_frames(snapshot.camera, [frame.camera for frame in frames], self._camera, messages)
         table = dataclasses.replace(snapshot.instances, vectors=vectors)
         return snapshot.replaced(meshes=tuple(meshes), instances=table, camera=camera)
 
     def _blurred(self, snapshot, messages):
-        cameras = ()
-        if self._camera_count:
-            cameras = tuple(self._instants[time].camera for time in relative_times(self._camera_count))
-            # Where something else moves, so does the region of a camera that stands still.
-            if all(camera == cameras[0] for camera in cameras):
-                cameras = ()
+        cameras = self._camera_keys(self._camera_count, lambda instant: instant.camera)
+        if self._sight is not None:
+            counts = enumerate(self._view_counts)
+            self._sight.keys = tuple(self._camera_keys(count, lambda instant, i=i: instant.views[i]) for i, count in counts)
         self._tell_lamps(messages)
         self._tell_world(messages)
         table = dataclasses.replace(snapshot.instances, motions=tuple(self._motions(messages)))
@@ -161,6 +162,11 @@ class MotionReader:
             normals = None if middle.normals is None else np.stack([shape.normals for shape in shapes])
             meshes[number] = dataclasses.replace(meshes[number], moved_positions=moved, moved_normals=normals)
         return snapshot.replaced(meshes=tuple(meshes), instances=table, motion=as_motion(self._shutter, cameras))
+
+    def _camera_keys(self, count, camera_of):
+        """Return the snapshot.Cameras at so many keys; none of a camera that stands still."""
+        cameras = tuple(camera_of(self._instants[time]) for time in relative_times(count)) if count else ()
+        return () if all(camera == cameras[0] for camera in cameras) else cameras
 
     def _tell_lamps(self, messages):
         """Name the lamps that move, of which Cycles blurs none."""

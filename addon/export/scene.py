@@ -45,10 +45,7 @@ class ExportOptions:
     shutter: object = None
     set_frame: object = None
     shaders: object = None
-    # For the pass Vector of a picture with several views: views() returns the snapshot.Cameras of all views as the depsgraph is
-    # evaluated; on_views receives for each view those one frame before and one after.
-    views: object = None
-    on_views: object = None
+    sight_of_views: object = None  # the Sight of a picture with several views, whose cameras are read with what moves
     # For a window:
     view: object = None  # a snapshot.Camera that replaces the camera object
     dicing: object = None  # the snapshot.Camera by whose pixels meshes are divided

@@ -28,6 +28,15 @@ def test_cameras(which, tmp_path):
     alike(got)
 
 
+def test_cameras_that_move(which, tmp_path):
+    got = blenders.run(which, tmp_path, "view_cases", "blurred", str(tmp_path))
+    got.pop("console", None)
+    assert sorted(got) == ["cameras", "eyes"]
+    for kind, differences in got.items():
+        alike(differences)
+        assert all(differences["engines"][view] < 0.2 * blur for view, blur in differences["blur"].items()), (kind, differences)
+
+
 def test_vectors_of_each_view(which, tmp_path):
     """But for one pixel in fifty, at edges; Cycles' single precision keeps 1e-3 of a pixel's place."""
     got = blenders.run(which, tmp_path, "view_cases", "vectors", str(tmp_path))

@@ -107,21 +107,40 @@ def _two_cameras(scene, camera):
     return other
 
 
+def _flight(kind):
+    """Return a scene seen by two eyes of a camera that moves, or by two cameras of which the second is faster."""
+    scene, camera = _scene()
+    seen = [camera]
+    if kind == "cameras":
+        seen.append(_two_cameras(scene, camera))
+    camera.data.stereo.interocular_distance, camera.data.stereo.convergence_distance = 0.4, 3.0
+    for number, eye in enumerate(seen):
+        place = eye.location.copy()
+        for frame in (1, 3):
+            eye.location.x = place.x + 0.2 * (1 + number) * (frame - 2)
+            eye.keyframe_insert("location", frame=frame)
+    scene.frame_set(2)
+    return scene
+
+
+def blurred(folder):
+    """Return the differences of eyes and of cameras that move, and how far motion blur changes each view."""
+    result = {}
+    for kind in ("eyes", "cameras"):
+        scene = _flight(kind)
+        sharp = _rendered(scene, folder)["LANCER"]
+        scene.render.use_motion_blur, scene.render.motion_blur_shutter = True, 2.0
+        found = _rendered(scene, folder)
+        blur = {view: float(np.abs(found["LANCER"][view] - sharp[view])[..., :3].mean()) for view in sharp}
+        result[kind] = {**_differences(found), "blur": blur}
+    return result
+
+
 def vectors(folder):
     """Return {view: largest difference and largest value of both engines' vectors} of eyes and of cameras that move."""
     result = {}
     for kind in ("eyes", "cameras"):
-        scene, camera = _scene()
-        seen = [camera]
-        if kind == "cameras":
-            seen.append(_two_cameras(scene, camera))
-        camera.data.stereo.interocular_distance, camera.data.stereo.convergence_distance = 0.4, 3.0
-        for number, eye in enumerate(seen):
-            place = eye.location.copy()
-            for frame in (1, 3):
-                eye.location.x = place.x + 0.2 * (1 + number) * (frame - 2)
-                eye.keyframe_insert("location", frame=frame)
-        scene.frame_set(2)
+        scene = _flight(kind)
         scene.view_layers[0].use_pass_vector = True
         # Samples at the middle of pixels show the same edges in both engines.
         for owner in (scene.cycles, scene.lancer):
