@@ -1,8 +1,8 @@
 """`make accuracy`: is the error that renders report true? build/accuracy/index.html.
 
-Twenty scenes, many seeds and converged references: the share of pixels inside their error bars, of errors inside the interval,
-of targets that are met, and biases. The figures of each scene are kept, so that an interrupted run continues where it ended.
-For comparison the page has the same figures for the noise threshold of Cycles.
+Scenes of all kinds, many seeds and converged references: the share of pixels inside their error bars, of errors inside the
+interval, of targets that are met, and biases. The figures of each scene are kept, so that an interrupted run continues where
+it ended. For comparison the page has the same figures for the noise threshold of Cycles.
 """
 
 import dataclasses

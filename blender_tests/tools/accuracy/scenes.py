@@ -1,4 +1,4 @@
-"""Twenty small scenes of all kinds, on which error estimates are tested."""
+"""Small scenes of all kinds, on which error estimates are tested."""
 
 import dataclasses
 import math
@@ -9,7 +9,7 @@ from tiny_scenes import beckmann, lambert, look_at, move, plane, quad, rotate_x,
 
 from addon.bindings.enums import AlphaMode, Coordinate, Integrator, LightKind, LobeKind, NodeKind, Pass, PixelFilter
 from addon.bindings.shading import Image, Lobe, Material, Node, NodeRef, World
-from addon.bindings.snapshot import Camera, Instance, Light, SceneSnapshot
+from addon.bindings.snapshot import Camera, Instance, InstanceMotion, Light, Motion, SceneSnapshot
 from tools.bench import jobs
 from tools.harness.places import BUILD
 from tools.harness.terminal import wanted
@@ -151,6 +151,26 @@ def glow():
     return _scene(instances, materials)
 
 
+def swing():
+    """A ball that slides past a card that turns, under a glowing ball that rises, while the shutter is open."""
+    instances, materials = _balls(lambert(0.7), beckmann(0.8, 0.3))
+    glowing, card = len(instances), len(instances) + 1
+    instances += [
+        sphere(len(materials), move(0, -1.5, 2.5) @ scale(0.3)),
+        Instance(mesh=0, matrix=move(-2.4, 0, 1.2) @ rotate_x(1.5), materials=(1,)),
+    ]
+    materials.append(Material("glow", lobes=(), emission=(40.0, 36.0, 30.0)))
+    snapshot = _scene(instances, materials, meshes=[quad(1.6)], world=0.05)
+    keys = {
+        1: [move(x, 0, 0.9) @ scale(0.9) for x in (-1.6, -1.1, -0.6)],
+        glowing: [move(0, -1.5, z) @ scale(0.3) for z in (2.0, 2.5, 3.0)],
+        card: [move(-2.4, 0, 1.2) @ rotate_x(angle) for angle in (0.7, 1.5, 2.3)],
+    }
+    matrices = np.array([[np.asarray(key, float)[:3] for key in moved] for moved in keys.values()])
+    table = dataclasses.replace(snapshot.instances, motions=(InstanceMotion(instances=list(keys), matrices=matrices),))
+    return snapshot.replaced(instances=table, motion=Motion(shutter=np.ones(2, np.float32)))
+
+
 def at_size(snapshot, width=WIDTH, height=HEIGHT):
     """Return the snapshot with another size of picture, and the same view from left to right."""
     camera = snapshot.camera
@@ -177,7 +197,7 @@ def from_blender(name):
 
 
 _OWN = (soft_shadow, mirror, depth_of_field, environment, tiny_lamp, half_black, glossy)
-_SLOWER = (classic, very_dark, high_contrast, showroom, veils, glow)
+_SLOWER = (classic, very_dark, high_contrast, showroom, veils, glow, swing)
 SCENES = (
     *(Scene(build.__name__, build, 16384) for build in _OWN),
     *(Scene(build.__name__, build, 8192) for build in _SLOWER),
