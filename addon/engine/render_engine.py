@@ -7,7 +7,6 @@ import time
 
 import bpy
 
-from ..bake.bake import Bake
 from ..bindings.abi import LancerError
 from ..bindings.session import Cancelled, Scene, Session
 from ..denoise import view_layer as denoise
@@ -24,6 +23,7 @@ from ..messages.severity import Severity
 from ..viewport.viewport import Viewport
 from . import first_look, kept_pictures, many_machines, passes, preview, render_export, render_job, resume, views
 from .account import account
+from .baking import Baking
 from .denoising import Denoising, wishes
 from .later import Later
 from .picture import Picture
@@ -49,7 +49,7 @@ _MANY_OBJECTS = 2000
 _SHORT = 0.2
 
 
-class LancerRenderEngine(bpy.types.RenderEngine):
+class LancerRenderEngine(Baking, bpy.types.RenderEngine):
     bl_idname = main_thread.ENGINE
     bl_label = "Lancer"
     bl_use_preview = True
@@ -70,7 +70,6 @@ class LancerRenderEngine(bpy.types.RenderEngine):
     _views = ()  # of the picture
     _shared = None  # the Scene of several views
     _viewport = None
-    _baked = 0  # images of an object
 
     def update_render_passes(self, scene=None, renderlayer=None):
         passes.register_passes(self, scene, renderlayer)
@@ -117,16 +116,6 @@ class LancerRenderEngine(bpy.types.RenderEngine):
                 # The remaining layers are not rendered.
                 self._picture = None
             redraw.properties_after_render()
-
-    def bake(self, depsgraph, object, pass_type, pass_filter, width, height):
-        scene = depsgraph.scene
-        if self._picture is None:
-            self._picture = Picture((scene.name, scene.frame_current_final), ())
-            last_messages.pop(scene, None)
-        with render_job.baking():
-            job = Bake(self, depsgraph, object, self._baked, lambda messages: self._tell(scene, messages), self._is_over)
-            self._baked += 1
-            self._guarded(scene, job.run, pass_type, pass_filter, width, height)
 
     def view_update(self, context, depsgraph):
         self._view().update(context, depsgraph)
