@@ -159,13 +159,16 @@ class LancerRenderEngine(Baking, bpy.types.RenderEngine):
         self._picture.begin(layer)
 
     def _guarded(self, scene, work, *arguments):
-        """Run work(*arguments); report any exception as an error, which ends a headless render with exit code 1."""
+        """Run work(*arguments) and return True; False after an exception.
+
+        Exceptions are reported as errors, which end a headless render with exit code 1.
+        """
         try:
             work(*arguments)
-            return
+            return True
         except Cancelled:
             self._snapshot = self._picture = None
-            return
+            return False
         except LancerError as error:
             text = str(error)
         except KeyboardInterrupt:
@@ -184,6 +187,7 @@ class LancerRenderEngine(Baking, bpy.types.RenderEngine):
         self._picture.messages.add(text, severity=Severity.FAILED)
         last_messages[scene] = self._picture.messages
         self._fail(text)
+        return False
 
     def _fail(self, text):
         self.error_set(f"Lancer: {text}")
