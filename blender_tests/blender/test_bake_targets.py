@@ -40,6 +40,14 @@ def test_selected_to_active(which, tmp_path):
 
 
 @both
+def test_light_of_another_object(which, tmp_path):
+    got = blenders.run(which, tmp_path, "bake_target_cases", "lit")
+    # No block is five standard errors apart, of which a block of the mean level has less than a hundredth.
+    assert got["bias"] < 0.0 and got["noise"] < 0.01 < got["level"]
+    assert got["other alpha"] == 0
+
+
+@both
 def test_margins(which, tmp_path):
     got = blenders.run(which, tmp_path, "bake_target_cases", "margins")
     got.pop("console")

@@ -6,7 +6,7 @@ import signal
 import bpy
 import numpy as np
 import stage
-from bake_stage import SIZE, bake, by_both, choose, fill, image, pixels, room, run
+from bake_stage import SIZE, bake, by_both, choose, compared, fill, image, pixels, room, run
 
 from scenes import parts
 
@@ -69,12 +69,17 @@ def tiles(folder):
     return {"tiles": beside, "apart from one": float(np.abs(whole - plain[..., :3]).max())}
 
 
-def onto_another():
-    """Return how both engines bake from a ball onto the block, by cage, extrusion and distance, and with both margins."""
+def _ball_and_block():
+    """Return the scene, a ball around the centre of the block, the block and its image."""
     scene, block, material = room()
-    picture = image(material)
     ball = stage.ball(0.75, parts.principled("Of the ball", base_color=(0.1, 0.8, 0.2)))
     ball.location = block.location
+    return scene, ball, block, image(material)
+
+
+def onto_another():
+    """Return how both engines bake from a ball onto the block, by cage, extrusion and distance."""
+    scene, ball, block, picture = _ball_and_block()
     cage = parts.place(scene, "Cage", block.data.copy(), None, block.location, rotation=block.rotation_euler)
     cage.scale, cage.hide_render = (1.9, 1.9, 1.9), True
     found = {}
@@ -88,6 +93,14 @@ def onto_another():
         choose(ball, block)
         found[name] = _places(scene, picture, use_selected_to_active=True, **options)
     return found
+
+
+def lit():
+    """Return how far the light that both engines bake from the ball onto the block is apart."""
+    scene, ball, block, picture = _ball_and_block()
+    choose(ball, block)
+    options = {"use_selected_to_active": True, "cage_extrusion": 0.6, "max_ray_distance": 0.5}
+    return compared(*by_both(lambda engine: bake(scene, picture, engine, "COMBINED", 128, **options)))
 
 
 def margins():
