@@ -43,6 +43,11 @@ def efficiency_ratios(figures, key, group=""):
     return result
 
 
+def bake_ratios(figures):
+    found = {name: get(bake, "efficiency_ratio", "value") for name, bake in get_dict(figures, "bakes").items()}
+    return {name: value for name, value in found.items() if value}
+
+
 def _denoised(figures):
     """Yield the comparisons of denoised pictures."""
     for scene in figures.get("scenes", {}).values():
@@ -286,6 +291,7 @@ _AGAINST_OTHERS = (
     lambda f: _ratios(
         "motion blur: efficiency against Cycles", "3x on every scene", efficiency_ratios(f, "cycles", "moving"), None, 3.0
     ),
+    lambda f: _ratios("bakes: efficiency against Cycles", "3x on every scene", bake_ratios(f), None, 3.0),
     lambda f: _ratios(
         "efficiency against Mitsuba llvm_ad_rgb",
         "10x in geometric mean, none below 1.5x",

@@ -10,7 +10,7 @@ _STYLE = "img.picture { width: 192px }"
 # Measurements besides scenes and rays.
 _REST = (
     "first_look", "first_shown", "frames", "edits", "shared", "million", "instances", "build", "threads_scaling",
-    "many_machines", "classic", "accelerators", "before",
+    "many_machines", "bakes", "classic", "accelerators", "before",
 )  # fmt: skip
 # The renderers of the table for users.
 _USERS = ("lancer", "cycles")

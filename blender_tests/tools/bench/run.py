@@ -11,7 +11,7 @@ from tools.harness.places import ROOT, digest_of_library, header
 from tools.harness.terminal import Progress, make_parser
 from tools.harness.workers import Failed
 
-from . import chart, classic, contest, extras, goals, jobs, many_machines, page, plan, rays, window
+from . import bakes, chart, classic, contest, extras, goals, jobs, many_machines, page, plan, rays, window
 
 # Seconds that a short run waits for another renderer.
 _QUICK_LIMIT = 45.0
@@ -79,6 +79,7 @@ def measure_rest(figures, arguments, say):
     attempt(figures, "view", say, window.view, rounds, threads)
     attempt(figures, "edits", say, window.edits, rounds, threads)
     attempt(figures, "shared", say, window.shared, threads)
+    attempt(figures, "bakes", say, bakes.measure, rounds, threads, arguments.quick, say)
     attempt(figures, "classic", say, classic.measure, rounds, threads, arguments.quick)
     if not arguments.quick:
         attempt(figures, "accelerators", say, extras.accelerators, rounds, threads)
