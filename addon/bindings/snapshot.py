@@ -18,6 +18,7 @@ from .enums import (
     Falloff,
     LightKind,
     Pass,
+    PassKind,
     Ray,
 )
 from .geometry import (  # noqa: F401 - all records have one address
@@ -30,6 +31,7 @@ from .geometry import (  # noqa: F401 - all records have one address
     ObjectAttribute,
 )
 from .npz import SnapshotError, load_npz, register, save_npz
+from .numbered_pass import NumberedPass
 from .record import Record, Sets, array
 from .shading import (  # noqa: F401 - all records have one address
     Image,
@@ -179,6 +181,27 @@ class Settings(_CoreSettings):
 
 @register
 @dataclass(frozen=True, eq=False)
+class NamedPass(Record):
+    """A NumberedPass of a picture, with its name in files and the letters of its channels."""
+
+    name: str = ""
+    channels: str = ""
+    kind: int = PassKind.SHADOW_CATCHER
+    number: int = 0
+
+    def __post_init__(self):
+        if len(self.channels) != PassKind(self.kind).channels:
+            raise ValueError(
+                f"pass '{self.name}' has the channels '{self.channels}', and {PassKind(self.kind).channels} values"
+            )
+
+    @property
+    def source(self):
+        return NumberedPass(PassKind(self.kind), self.number)
+
+
+@register
+@dataclass(frozen=True, eq=False)
 class SceneSnapshot(Record):
     meshes: tuple[MeshData, ...] = ()
     instances: InstanceTable = field(default_factory=InstanceTable)
@@ -189,6 +212,7 @@ class SceneSnapshot(Record):
     camera: Camera = field(default_factory=Camera)
     settings: Settings = field(default_factory=Settings)
     motion: Motion | None = None  # None: everything is shown as it stands
+    named_passes: tuple[NamedPass, ...] = ()  # those of settings.mattes, light_groups, aov_* and catchers that files have
 
     def __post_init__(self):
         for name in ("meshes", "materials", "lights", "images"):

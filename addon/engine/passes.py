@@ -7,11 +7,10 @@ import numpy as np
 
 from ..bindings.enums import Pass, PassKind
 from ..bindings.numbered_pass import NumberedPass
-from ..bindings.pass_names import CRYPTOMATTE_CHANNELS, CRYPTOMATTES, NAMES
+from ..bindings.pass_names import NAMES
 from ..denoise import view_layer as denoise
 from ..export import catchers
-from ..export.light_groups import light_groups_of
-from ..export.outputs import aovs_of
+from ..export.named_passes import named_passes
 
 
 class RenderPass(NamedTuple):
@@ -44,14 +43,7 @@ _TABLE = (
     ("environment", Pass.ENVIRONMENT, "COLOR"),
     ("ambient_occlusion", Pass.AMBIENT_OCCLUSION, "COLOR"),
 )
-# Suffix of the view layer's switch use_pass_cryptomatte_*.
-_CRYPTOMATTES = (
-    ("object", PassKind.OBJECT_MATTES),
-    ("material", PassKind.MATERIAL_MATTES),
-    ("asset", PassKind.ASSET_MATTES),
-)
 _SAMPLE_COUNT, _RENDER_TIME = NumberedPass(PassKind.SAMPLES), NumberedPass(PassKind.RENDER_TIME)
-_SHADOW_CATCHER = "Shadow Catcher"
 _DENOISED_ERROR = "Lancer Denoised Error"
 _LONG_NAMES = bpy.app.version >= (5, 0)
 _ALL_GUIDES = bpy.app.version >= (5, 2)
@@ -78,14 +70,8 @@ def render_passes(scene, view_layer):
         yield RenderPass("Debug Sample Count", "X", "VALUE", _SAMPLE_COUNT)
     if getattr(cycles, "pass_render_time", False):
         yield RenderPass("Render Time", "X", "VALUE", _RENDER_TIME)
-    if catchers.has_pass(view_layer):
-        yield RenderPass(_SHADOW_CATCHER, "RGB", "COLOR", catchers.SOURCE)
-    # Each pass has two levels.
-    levels = range((min(16, view_layer.pass_cryptomatte_depth) + 1) // 2)
-    for switch, kind in _CRYPTOMATTES:
-        for level in levels if getattr(view_layer, "use_pass_cryptomatte_" + switch) else ():
-            name = f"{CRYPTOMATTES[kind]}{level:02d}"
-            yield RenderPass(name, CRYPTOMATTE_CHANNELS, "COLOR", NumberedPass(kind, level))
+    for named in named_passes(view_layer):
+        yield RenderPass(named.name, named.channels, "VALUE" if named.channels == "X" else "COLOR", named.source)
     if denoise.wanted(scene, view_layer):
         yield RenderPass("Noisy Image", "RGBA", "COLOR", Pass.COMBINED)
     denoising = getattr(cycles, "denoising_store_passes", False)
@@ -98,10 +84,6 @@ def render_passes(scene, view_layer):
         yield _pass(Pass.ROUGHNESS, "VALUE")
     if denoising:
         yield _pass(Pass.DENOISING_DEPTH, "VALUE")
-    for aov in aovs_of(view_layer):
-        yield RenderPass(aov.name, "RGBA" if aov.is_color else "X", "COLOR" if aov.is_color else "VALUE", aov.source)
-    for name, source in light_groups_of(view_layer):
-        yield RenderPass(f"Combined_{name}", "RGB", "COLOR", source)
     if scene.lancer.use_pass_error:
         yield _pass(Pass.ERROR, "VALUE")
         if denoise.wanted(scene, view_layer):
@@ -134,7 +116,7 @@ def show_denoised(layer, denoised):
     for target in layer.passes:
         if target.name == "Combined":
             _upload(target, denoised.image)
-        elif target.name == _SHADOW_CATCHER and denoised.catcher is not None:
+        elif target.name == catchers.TITLE and denoised.catcher is not None:
             _upload(target, np.ascontiguousarray(denoised.catcher))
         elif target.name == _DENOISED_ERROR and denoised.combined is not None:
             _upload(target, np.ascontiguousarray(denoised.combined.bars[..., None]))

@@ -8,9 +8,9 @@ import time
 import bpy
 
 from ..bindings.abi import LancerError
+from ..bindings.mattes import metadata
 from ..bindings.session import Cancelled, Scene, Session
 from ..denoise import view_layer as denoise
-from ..export.mattes import metadata
 from ..export.moving_scene import export_picture
 from ..export.scene import ExportOptions
 from ..export.settings import threads_of

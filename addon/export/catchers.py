@@ -7,6 +7,7 @@ from ..bindings.enums import Catchers, InstanceFlag, Integrator, PassKind
 from ..bindings.numbered_pass import NumberedPass
 
 SOURCE = NumberedPass(PassKind.SHADOW_CATCHER)
+TITLE = "Shadow Catcher"
 # Find out once: a failing getattr per object takes as long as all other reads.
 _HAS_CATCHER = "is_shadow_catcher" in bpy.types.Object.bl_rna.properties
 

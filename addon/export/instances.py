@@ -7,13 +7,13 @@ import bpy
 import numpy as np
 
 from ..bindings.enums import PassKind
+from ..bindings.mattes import ids
 from ..bindings.numbered_pass import MATTES, NumberedPass
 from ..bindings.snapshot import InstanceTable
 from ..messages.severity import Severity
 from .apart import read_infos
 from .culling import EVERY_RAY
 from .lights import export_lamp_nodes, export_light
-from .mattes import ids
 from .object_attributes import LAMPS_ARE_OBJECTS, AttributeReader, read_object_attributes
 from .objects import Objects
 from .unsupported import check_hair

@@ -6,6 +6,7 @@ import bpy
 
 from ..bindings import snapshot
 from ..bindings.enums import LobeKind, MaterialFlag, NodeKind, ObjectFact
+from ..bindings.mattes import DEFAULT_SURFACE, ids
 from ..bindings.parameters import read_nodes, without_idle_nodes
 from ..messages.severity import Severity
 from .arithmetic import is_constant, triple
@@ -13,7 +14,6 @@ from .course_models import PARAMETERS, lobes_of
 from .graph import NodeGraph
 from .hit_attributes import of_all_hits
 from .images import Images
-from .mattes import DEFAULT_SURFACE, ids
 from .normals import bump, displacement_height
 from .outputs import read_outputs
 from .shader_cache import ShaderCache, Sources

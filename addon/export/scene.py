@@ -18,6 +18,7 @@ from .light_groups import group_numbers
 from .light_linking import read_linking
 from .materials import Materials
 from .motion import read_motion
+from .named_passes import named_passes
 from .outputs import rendered_aovs
 from .scene_state import scene_state
 from .settings import export_settings, world_of
@@ -87,6 +88,7 @@ def export_scene(depsgraph, options=None, poll=None):
     check_scene(scene, messages)
     check_passes(scene, options.passes, messages)
     check_view_layer(scene, view_layer, messages)
+    named = tuple(item for item in named_passes(view_layer) if item.source in options.passes)
     linking = read_linking(depsgraph, messages)
     parts, cache = options.parts, texture_cache(scene)
     if parts is not None:
@@ -96,6 +98,7 @@ def export_scene(depsgraph, options=None, poll=None):
         if again is not None:
             # The messages of the last export include those of the checks above, which have not changed.
             snapshot, messages, geometries = again
+            snapshot = snapshot.replaced(named_passes=named)
             return _placed(snapshot, geometries, messages, options, camera, with_catchers(snapshot)), messages
     images = parts.images if parts is not None else options.shaders.images if options.shaders else Images(obey, options.kept)
     images.obey = obey
@@ -123,6 +126,7 @@ def export_scene(depsgraph, options=None, poll=None):
         lights=tuple(instances.lights if parts is None else parts.lights(instances.lights)),
         images=tuple(images.list),
         world=_grouped(exported.world, sky, group_numbers(view_layer, options.passes)),
+        named_passes=named,
     )
     obey()
     if options.shutter is not None:

@@ -47,6 +47,8 @@ def write(rendered, path, half=False):
     spec, pixels = _exr(module, rendered, half) if _ending(name) == ".exr" else _png(module, rendered)
     for field, text in render_report.fields(rendered.statistics, rendered.settings):
         spec.attribute(f"lancer.{LAYER}.{field}", text)
+    for field, text in rendered.metadata:
+        spec.attribute(field, text)
     spec.attribute("Software", f"Lancer {rendered.statistics['version']}")
     with tempfile.TemporaryDirectory(prefix=f".{name}.", dir=folder) as place:
         whole = os.path.join(place, name)

@@ -9,12 +9,14 @@ import numpy as np
 
 from ..bindings import bug_report
 from ..bindings.abi import Pass
+from ..bindings.mattes import metadata
 from ..bindings.pass_names import NAMES
 from ..bindings.session import Session
 from ..bindings.snapshot import Camera, SceneSnapshot, Settings
 from ..measure import render_report
 from ..measure.scene_features import kernel_in_words, used_features
 from ..messages.messages import Messages
+from . import picture_file
 from .remote_session import RemoteSession
 from .still import render_still
 
@@ -27,6 +29,8 @@ class Rendered(NamedTuple):
     messages: list  # sentences about what differs from the scene
     camera: Camera
     settings: Settings
+    named_passes: tuple = ()  # the snapshot.NamedPasses among the passes
+    metadata: tuple = ()  # (name, text) of the manifests of mattes
 
     @property
     def picture(self):
@@ -36,12 +40,11 @@ class Rendered(NamedTuple):
     @property
     def channels(self):
         """The letters of each pass's channels, by its name."""
-        return {named.name: named.channels for named in NAMES.values() if named.name in self.passes}
+        named = (*NAMES.values(), *self.named_passes)
+        return {item.name: item.channels for item in named if item.name in self.passes}
 
     def save(self, path, half=False):
         """Write the passes to an OpenEXR file, or the picture to a PNG file; half: colours with 16 bits. Needs OpenImageIO."""
-        from . import picture_file
-
         picture_file.write(self, path, half)
 
 
@@ -68,14 +71,20 @@ def render(scene, samples=None, threads=None, tell=None, pool=None, poll=None):
     if tell is not None:
         tell(0.0, "building the scene")
     with Session.upload(snapshot) if pool is None else RemoteSession(snapshot, pool, poll) as session:
-        return rendered_of(session, render_still(session, tell, poll))
+        return rendered_of(session, render_still(session, tell, poll), snapshot)
 
 
-def rendered_of(session, schedule):
-    """Return the Rendered of a session whose render has ended."""
+def rendered_of(session, schedule, snapshot=None):
+    """Return the Rendered of a session whose render has ended. snapshot: has the names of passes beyond those of enums.Pass."""
     passes = {NAMES[which].name: _from_top(session.read(which)) for which in _read(session.settings)}
+    named, fields = (), ()
+    if snapshot is not None:
+        named = snapshot.named_passes
+        passes |= {item.name: _from_top(session.read(item.source)) for item in named}
+        fields = tuple(metadata(picture_file.LAYER, snapshot, [item.source for item in named]).items())
     messages = Messages.of_library(session.messages()).lines()
-    return Rendered(passes, render_report.account(session, schedule), messages, session.camera, session.settings)
+    account = render_report.account(session, schedule)
+    return Rendered(passes, account, messages, session.camera, session.settings, named, fields)
 
 
 def _read(settings):

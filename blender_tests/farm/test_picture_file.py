@@ -5,6 +5,7 @@ import io
 import os
 
 import blenders
+import exr
 import numpy as np
 import OpenImageIO as oiio
 import pytest
@@ -120,6 +121,27 @@ def test_blender_reads_all_passes_as_of_its_own(tmp_path):
     assert (got["type"], got["layer"]) == ("MULTILAYER", "ViewLayer")
     # Blender adds the alpha of Combined.
     assert set(got["passes"]) == {named.name for named in NAMES.values()} | {"Alpha"}
+
+
+def test_passes_with_names_are_those_of_blenders_file(tmp_path):
+    """Light groups, AOVs, mattes with their manifests, Shadow Catcher and Vector."""
+    snapshot, picture, path = (tmp_path / name for name in ("room.npz", "blender.exr", "lancer.exr"))
+    blenders.run(MODULE, tmp_path, "picture_file_cases", "named_passes", snapshot, picture)
+    rendered = render(snapshot)
+    theirs = exr.read(picture)
+    levels = [f"Crypto{kind}{level:02d}" for kind in ("Object", "Material") for level in range(3)]
+    assert set(theirs) == {"Combined", "Vector", "Shadow Catcher", "Combined_key", "Tint", "Number", *levels}
+    for name, values in theirs.items():
+        np.testing.assert_array_equal(rendered.passes[name], values, name)
+    rendered.save(path, half=True)
+    pixels, spec = pixels_of(path)
+    names = {f"ViewLayer.{name}.{letter}" for name, letters in rendered.channels.items() for letter in letters}
+    assert set(spec.channelnames) == names
+    # Ids of mattes are bits of whole floats.
+    first = [spec.channelnames.index(f"ViewLayer.CryptoObject00.{letter}") for letter in "rgba"]
+    np.testing.assert_array_equal(pixels[..., first], theirs["CryptoObject00"])
+    told = {name: text for name, text in exr.attributes(picture).items() if name.startswith("cryptomatte/")}
+    assert len(told) == 8 and {name: spec.getattribute(name) for name in told} == told
 
 
 def test_settings_of_the_snapshot_end_the_render(tmp_path):

@@ -8,9 +8,9 @@ import json
 
 import numpy as np
 
-from ..bindings.enums import PassKind
-from ..bindings.numbered_pass import MATTES, NumberedPass
-from ..bindings.pass_names import CRYPTOMATTES as TITLES
+from .enums import PassKind
+from .numbered_pass import MATTES, NumberedPass
+from .pass_names import CRYPTOMATTES as TITLES
 
 # As Cycles names the surface of objects without a material.
 DEFAULT_SURFACE = "default_surface"
