@@ -76,6 +76,7 @@ class Light(Parameters, struct=structs.Light):
     hidden_from: int = Ray.CAMERA  # bits; by default lamps are invisible to the camera
     no_shadow: bool = False
     no_catchers: bool = False
+    opening: bool = False
     light_group: int = 0  # 1 is the first; 0 = none
     lit_surfaces: int = 0  # 0: all
     unlit_sets: Sets = 0

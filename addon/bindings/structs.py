@@ -258,6 +258,7 @@ class Light(Structure):
         ("specular_color", c_float * 3),
         ("lit_surfaces", c_uint32),
         ("no_catchers", c_uint32),
+        ("opening", c_uint32),
         ("unlit_sets", c_uint64),
         ("clear_sets", c_uint64),
     ]

@@ -18,7 +18,7 @@ def check_lamps_in_faces(subject, facets, world):
     lamps = [
         light
         for light in subject.snapshot.lights
-        if light.kind == LightKind.AREA and any(light.emission) and not light.no_shadow
+        if light.kind == LightKind.AREA and any(light.emission) and not light.no_shadow and not light.opening
     ]
     if world is None or not lamps:
         return

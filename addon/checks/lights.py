@@ -12,7 +12,8 @@ def check_lights(subject):
     snapshot = subject.snapshot
     if snapshot.settings.integrator == Integrator.NORMALS:
         return
-    levels = [max(map(abs, light.emission)) for light in snapshot.lights]
+    lamps = [light for light in snapshot.lights if not light.opening]
+    levels = [max(map(abs, light.emission)) for light in lamps]
     if not (any(level > 0.0 for level in levels) or not is_zero(snapshot.world.radiance) or _any_emission(subject)):
         # A scene with other passes may be meant for those alone, such as masks.
         if set(snapshot.settings.passes) == {Pass.COMBINED}:
@@ -20,7 +21,7 @@ def check_lights(subject):
             yield Finding("lights", Severity.WRONG, what, advice)
         return
     strongest = max(levels, default=0.0)
-    for light, level in zip(snapshot.lights, levels, strict=True):
+    for light, level in zip(lamps, levels, strict=True):
         place = tuple(light.matrix[:, 3].tolist())
         if not level > 0.0:
             what = "gives no light: its power or colour is 0"

@@ -51,7 +51,7 @@ def check_round_faces(subject):
 
 
 def _has_lamps_with_extent(subject):
-    lamps = any(light.kind == LightKind.AREA and any(light.emission) for light in subject.snapshot.lights)
+    lamps = any(light.kind == LightKind.AREA and any(light.emission) and not light.opening for light in subject.snapshot.lights)
     return lamps or any(subject.traits[number].emits for number in set(subject.instances.slots.tolist()))
 
 

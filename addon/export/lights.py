@@ -55,9 +55,8 @@ def export_light(thing, matrix_world, messages, depsgraph=None, hidden=None, shi
     if not np.isfinite(matrix).all():
         messages.add(f"{who}: its transform is not finite, it is left out", severity=Severity.LEFT_OUT)
         return None
-    # A portal emits no light: it only guides Cycles' sampling of the sky.
     if light.type == "AREA" and getattr(getattr(light, "cycles", None), "is_portal", False):
-        return None
+        return _export_portal(thing, light, matrix, who, messages)
     _check(thing, light, who, messages)
     kind = _KINDS[light.type]
     radius = messages.number(getattr(light, "shadow_soft_size", 0.0), who, "radius", 0.0, 0.0)
@@ -117,6 +116,17 @@ def export_light(thing, matrix_world, messages, depsgraph=None, hidden=None, shi
         diffuse_color=messages.color(own.diffuse_color, who, "diffuse colour", 1.0) if separate else (1.0, 1.0, 1.0),
         specular_color=messages.color(own.specular_color, who, "specular colour", 1.0) if separate else (1.0, 1.0, 1.0),
     )
+
+
+def _export_portal(thing, light, matrix, who, messages):
+    """Return the opening through which the sky is sampled; None, with a message, if it has no area."""
+    shape, size = _area(light, matrix, who, messages)
+    if not area_of(matrix, shape, size) > 0.0:
+        messages.add(f"{who}: its area is zero, it is no portal", severity=Severity.HINT)
+        return None
+    axes = axes_of(LightKind.AREA, matrix, False)
+    fields = {"size": size, "shape": shape, "emission": (0.0, 0.0, 0.0), "opening": True}
+    return snapshot.Light(name=thing.name, matrix=axes, kind=LightKind.AREA, **fields)
 
 
 def _check_layers(kind, radius, who, messages, depsgraph):

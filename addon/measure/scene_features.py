@@ -89,7 +89,7 @@ def _objects_where(mask):
 
 
 def _lamps_that(uses):
-    return lambda snapshot, shown: _named([light.name for light in snapshot.lights if uses(light)])
+    return lambda snapshot, shown: _named([light.name for light in snapshot.lights if not light.opening and uses(light)])
 
 
 def _lamps_of(kind):
@@ -237,6 +237,10 @@ _KINDS = (
     _Kind("spot-lights", "{n} spot lamp", "{n} spot lamps", _lamps_of(LightKind.SPOT)),
     _Kind("sun-lights", "{n} sun", "{n} suns", _lamps_of(LightKind.SUN)),
     _Kind("area-lights", "{n} area lamp", "{n} area lamps", _lamps_of(LightKind.AREA)),
+    _Kind(
+        "openings", "{n} portal guides samples of the sky", "{n} portals guide samples of the sky",
+        lambda snapshot, shown: _named([light.name for light in snapshot.lights if light.opening]),
+    ),
     _Kind("environment", "The sky shines", "The sky shines", _number(lambda snapshot: not is_zero(snapshot.world.radiance))),
     _Kind("holdout-materials", "{n} material cuts holes", "{n} materials cut holes", _materials_that(_is_hole)),
     _Kind(

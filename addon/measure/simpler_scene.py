@@ -99,7 +99,7 @@ def _turned(kind):
 def has_extent(light):
     if light.kind == LightKind.SUN:
         return light.sun_angle > 0.0
-    return light.kind == LightKind.AREA or light.radius > 0.0
+    return (light.kind == LightKind.AREA and not light.opening) or light.radius > 0.0
 
 
 def _as_point(light):
@@ -134,9 +134,11 @@ def _power(light: Light):
 
 
 def one_lamp(snapshot):
-    if len(snapshot.lights) < 2:
+    lamps = [light for light in snapshot.lights if not light.opening]
+    if len(lamps) < 2:
         return snapshot
-    return _replaced(snapshot, lights=(max(snapshot.lights, key=_power),))
+    brightest = max(lamps, key=_power)
+    return _replaced(snapshot, lights=tuple(light for light in snapshot.lights if light is brightest or light.opening))
 
 
 # ---- sky, camera, settings ----

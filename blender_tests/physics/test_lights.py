@@ -319,7 +319,8 @@ def test_export(which, tmp_path):
     assert got["plain"] == {"hidden_from": 1, "no_shadow": False, "size": [1.0, 1.0]}
     assert got["seen"]["hidden_from"] == 4 + 32 and got["unshadowed"]["no_shadow"]
     assert np.allclose(got["stretched"]["size"], (3.0, 0.5) if new else (1.0, 1.0))
-    assert got["portal"] is None
+    portal = got["portal"]
+    assert portal["opening"] and portal["emission"] == [0.0, 0.0, 0.0]
     assert np.allclose(got["nodes"], np.array((0.5, 0.25, 1.0)) * 3.0)
     assert got["messages"] == []
 

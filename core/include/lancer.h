@@ -895,6 +895,8 @@ typedef struct lancer_light {
   float specular_color[3];
   uint32_t lit_surfaces; /* PATH: light samples on the first surfaces of a path alone, so many of them; 0 = on all */
   uint32_t no_catchers;  /* 1: none of its light is that of shadow catchers alone, see lancer_settings.catchers */
+  uint32_t opening; /* AREA: 1 = it gives no light: half of PATH's light samples of the world go through such openings, to points
+                       on the side to which they face. It changes the noise, not the picture */
   uint64_t unlit_sets;   /* light linking: bits of the sets of receivers that its light does not reach */
   uint64_t clear_sets;   /* bits of the sets of blockers that its light passes */
 } lancer_light;

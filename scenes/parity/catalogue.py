@@ -42,6 +42,7 @@ SUBJECTS = (
     "lights_switches",
     "lights_exact",
     "lights_linked",
+    "lights_portals",
     "worlds",
     "skies",
     "cameras",

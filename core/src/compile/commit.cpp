@@ -66,10 +66,11 @@ InstanceVectors place_vectors(std::span<const GivenVectors> given, const Scene &
 }
 
 Environment make_environment(const Scene &scene, const BuildContext &context, const Scene *before) {
-  const bool glass = scene.features & kFeatureGlass;
-  if (before && before->world_owner == scene.world_owner && bool(before->features & kFeatureGlass) == glass)
+  constexpr uint32_t kAsked = kFeatureGlass | kFeatureOpenings;
+  if (before && before->world_owner == scene.world_owner && (before->features & kAsked) == (scene.features & kAsked))
     return Environment(before->lights.environment(), scene.normalisation);
-  return Environment(scene.world, scene.normalisation, context, glass);
+  return Environment(scene.world, scene.normalisation, context, scene.features & kFeatureGlass,
+                     scene.features & kFeatureOpenings);
 }
 
 // Returns the bits of the sets of receivers that there are.
@@ -82,8 +83,13 @@ uint64_t receiver_sets(const GeometryView &geometry) {
 
 LightSet make_lights(Scene &scene, const BuildContext &context, const Scene *before) {
   EmissionAt emission(scene.node_scene(nullptr), scene.materials);
-  std::vector<Light> lights;
+  std::vector<Light> lights, openings;
   for (const auto &light : scene.light_owners) {
+    if (light->opening) {
+      if (const Light opening = place_light(*light, scene.normalisation); opening.area > 0.0)
+        openings.push_back(opening);
+      continue;
+    }
     lights.push_back(place_light(*light, scene.normalisation));
     add_lamp_shader(*light, lights.back(), scene.normalisation, scene.lamp_shaders);
   }
@@ -96,7 +102,7 @@ LightSet make_lights(Scene &scene, const BuildContext &context, const Scene *bef
                                &scene.made_emitters};
   return LightSet(std::move(lights), make_emitters(scene.geometry, scene.slots, scene.materials, emission, context, sources),
                   scene.geometry.instances.size(), make_environment(scene, context, before), context,
-                  receiver_sets(scene.geometry));
+                  receiver_sets(scene.geometry), std::move(openings));
 }
 
 // Marks the blockers that the light of some lamp or emitter passes, beside the instances that let light pass straight through.

@@ -197,7 +197,7 @@ Features find_features(const Description &description) {
     if (shown[i])
       add_material(*description.materials[i], features);
   for (const Given<LightDescription> &light : description.lights)
-    features.bits |= kFeaturePointLights << uint32_t(light->kind);
+    features.bits |= light->opening ? kFeatureOpenings : kFeaturePointLights << uint32_t(light->kind);
   const World &world = *description.world;
   if (world.varies() || world.radiance.value != glm::vec3(0.0f))
     features.bits |= kFeatureEnvironment;
@@ -215,7 +215,7 @@ std::string feature_names(const Features &features) {
       "transparency",  "triangles",   "instances",  "spheres",      "planes",         "cylinders",   "cones",
       "point-lights",  "spot-lights", "sun-lights", "area-lights",  "emitters",       "environment", "environment-map",
       "vertex-colors", "nodes",       "textures",   "displacement", "holdout",        "visibility",  "glass",
-      "portals",       "walks",       "mipmaps",    "motion",       "shadow-catchers"};
+      "portals",       "walks",       "mipmaps",    "motion",       "shadow-catchers", "openings"};
   static_assert(std::size(shapes) == kLobeShapes);
   std::string text;
   const auto add = [&](const char *name) {

@@ -36,6 +36,7 @@ enum Feature : uint32_t {
   kFeatureMipmaps = 1u << 23,    // some node reads levels of an image
   kFeatureMotion = 1u << 24,     // some object moves or changes its shape
   kFeatureCatchers = 1u << 25,   // some object is a shadow catcher
+  kFeatureOpenings = 1u << 26,   // light samples of the environment go through openings
 };
 
 struct Features {

@@ -143,11 +143,15 @@ MapSize map_size(uint32_t resolution, uint32_t widest) {
   return size;
 }
 
-Environment::Environment(const WorldView &world, const Normalisation &normalisation, const BuildContext &context, bool glass)
+Environment::Environment(const WorldView &world, const Normalisation &normalisation, const BuildContext &context, bool glass,
+                         bool opened)
     : world_(world), normalisation_(&normalisation), constant_(world.radiance.value),
       mean_(double(weight_of(world.radiance.value))), hidden_from_(world.hidden_from) {
-  if (!world.varies())
+  if (!world.varies()) {
+    if (opened && mean_ > 0.0)
+      make_even_map();
     return;
+  }
   const uint32_t across = world.map_resolution > 0 ? world.map_resolution : std::max(image_width(world), 4096u);
   finest_ = 2.0f * glm::pi<float>() / float(across);
   if (has_directions(world)) {
@@ -156,6 +160,13 @@ Environment::Environment(const WorldView &world, const Normalisation &normalisat
   }
   std::vector<glm::vec4> values(world.program.value_count());
   mean_ = double(weight_of(evaluate(glm::dvec3(0.0, 0.0, 1.0), values, nullptr, nullptr)));
+  if (opened && mean_ > 0.0)
+    make_even_map();
+}
+
+void Environment::make_even_map() {
+  constexpr uint32_t kWidth = 4, kHeight = 2;
+  maps_ = std::make_shared<const Maps>(DirectionMap(kWidth, kHeight, std::vector<float>(kWidth * kHeight, 1.0f)), DirectionMap());
 }
 
 glm::vec3 Environment::evaluate(const ProgramView &program, const glm::dvec3 &wi, std::span<glm::vec4> values,

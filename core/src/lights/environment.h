@@ -32,18 +32,20 @@ public:
   // the variance. Glass samples from a second map, proportional to the radiance as in Cycles. It needs that density because the
   // light that a rough boundary transmits between two directions that no facet connects depends on the density of light samples
   // (Bsdf::eval_lit). The discs of suns are sampled apart, uniformly: the maps do not contain them, and no disc is too small.
-  Environment(const WorldView &world, const Normalisation &normalisation, const BuildContext &context, bool glass);
+  // opened: directions are also sampled through openings, which makes a light of any environment that is not black.
+  Environment(const WorldView &world, const Normalisation &normalisation, const BuildContext &context, bool glass,
+              bool opened = false);
 
   // Makes the environment of the same world, with the same demand for glass, in another scene.
   Environment(const Environment &other, const Normalisation &normalisation) : Environment(other) {
     normalisation_ = &normalisation;
   }
 
-  // Whether the radiance depends on the direction or the path. A constant environment is no light to sample: BSDF samples find
-  // it best.
+  // Whether the radiance depends on the direction or the path. A constant environment is no light to sample, unless there are
+  // openings: BSDF samples find it best.
   bool varies() const { return world_.varies(); }
-  // Whether the environment is sampled: its radiance differs between directions. BSDF samples find radiance that depends on the
-  // path alone, as in Cycles.
+  // Whether the environment is sampled: its radiance differs between directions, or there are openings. Otherwise BSDF samples
+  // find radiance that depends on the path alone, as in Cycles.
   bool is_light() const { return !maps_->above_mean.empty(); }
   const glm::vec3 &constant() const { return constant_; }
   uint32_t hidden_from() const { return hidden_from_; }
@@ -92,6 +94,8 @@ private:
   void run_nodes(const ProgramView &program, ScheduleView schedule, const glm::dvec3 &wi, std::span<glm::vec4> values,
                  const Camera *camera, const glm::dvec3 *eye, const LightPath<float> &path) const;
   void make_maps(const BuildContext &context, bool glass);
+  // Makes a map of equal densities.
+  void make_even_map();
   // Returns the integral of a sun's weight over its disc. plain: the nodes without the suns.
   double flux_of(const Sun &sun, const ProgramView &plain) const;
   const DirectionMap &map(bool transmits) const {

@@ -36,8 +36,9 @@ double LightTrees::probability(const LightQuery &query, uint32_t light, uint32_t
 }
 
 LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, size_t instance_count, Environment environment,
-                   const BuildContext &context, uint64_t receiver_sets)
-    : lamps_(std::move(lights)), emitters_(std::move(emitters)), environment_(std::move(environment)) {
+                   const BuildContext &context, uint64_t receiver_sets, std::vector<Light> openings)
+    : lamps_(std::move(lights)), emitters_(std::move(emitters)), environment_(std::move(environment)),
+      openings_(std::move(openings)) {
   for (const Light &light : lamps_) {
     most_before_ = std::max(most_before_, kMostTolerances * light.plane_tolerance);
     switches_.push_back(light.hidden_from | (light.no_shadow ? kNoShadow : 0));
@@ -122,7 +123,7 @@ double LightSet::probability(const GeometryView &geometry, const LightQuery &que
 }
 
 size_t LightSet::bytes() const {
-  size_t bytes = environment_.bytes() + lamps_.size() * sizeof(Light) +
+  size_t bytes = environment_.bytes() + (lamps_.size() + openings_.size()) * sizeof(Light) +
                  (emitter_of_.size() + switches_.size()) * sizeof(uint32_t) + trees_.few.bytes() + trees_.many.bytes() +
                  links_.size() * sizeof(LightLinks);
   for (const LightTrees &trees : linked_trees_)

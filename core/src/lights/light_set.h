@@ -4,6 +4,7 @@
 #include "lights/emission.h"
 #include "lights/environment.h"
 #include "lights/light_tree.h"
+#include "lights/openings.h"
 
 namespace lancer {
 
@@ -19,15 +20,17 @@ class LightSet {
 public:
   LightSet() = default;
   // Described lights come first, then one light per emitting instance, then the environment where Environment::is_light().
-  // receiver_sets: bits of the sets of receivers that there are. Throws BuildCancelled.
+  // receiver_sets: bits of the sets of receivers that there are; openings: see Openings. Throws BuildCancelled.
   LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, size_t instance_count, Environment environment,
-           const BuildContext &context = {}, uint64_t receiver_sets = 1);
+           const BuildContext &context = {}, uint64_t receiver_sets = 1, std::vector<Light> openings = {});
 
   size_t size() const { return lamps_.size() + emitters_.size() + (environment_.is_light() ? 1 : 0); }
   bool empty() const { return size() == 0; }
   const std::vector<Light> &lamps() const { return lamps_; }
   const std::vector<Emitter> &emitters() const { return emitters_; }
   const Environment &environment() const { return environment_; }
+  // Valid as long as the set is neither changed nor moved.
+  Openings openings() const { return {openings_.data(), uint32_t(openings_.size())}; }
   // Whether no light of an emitter can arrive on this side of a surface; returns false for lamps and the environment.
   bool behind(uint32_t light, const glm::dvec3 &p, const glm::vec3 &n) const {
     const size_t emitter = light - lamps_.size();
@@ -112,6 +115,7 @@ private:
   bool find_ = false;
   double most_before_ = 0.0;
   Environment environment_;
+  std::vector<Light> openings_;
 };
 
 } // namespace lancer

@@ -79,12 +79,15 @@ LightDescription read_light(const lancer_light &source, size_t number, Images im
     bad_argument(object + ": shape " + std::to_string(source.shape) + " is not one of 0, 1");
   if (source.falloff > LANCER_FALLOFF_GAUSSIAN)
     bad_argument(object + ": falloff " + std::to_string(source.falloff) + " is not one of 0 ... 5");
+  if (source.opening != 0 && source.kind != LANCER_AREA)
+    bad_argument(object + ": kind " + std::to_string(source.kind) + " is no opening, only an area is");
   check_rays(object, source.hidden_from);
 
   LightDescription light;
   light.name = source.name ? source.name : "";
   light.light_group = source.light_group;
   light.kind = static_cast<LightKind>(source.kind);
+  light.opening = source.opening != 0;
   light.program = read_program(images, object, source.nodes, source.node_count);
   if (source.node_count)
     light.strength = read_strength(object, source.strength, light.program);
@@ -115,7 +118,7 @@ LightDescription read_light(const lancer_light &source, size_t number, Images im
                        : glm::vec2(reader.read("size", source.size[0], smallest, kBrightest),
                                    reader.read("size", source.size[1], smallest, kBrightest));
     light.shape = static_cast<AreaShape>(source.shape);
-    light.spread = reader.read("spread", source.spread, 0.0f, glm::pi<float>());
+    light.spread = light.opening ? glm::pi<float>() : reader.read("spread", source.spread, 0.0f, glm::pi<float>());
     light.hidden_from = source.hidden_from;
     light.no_shadow = source.no_shadow != 0;
     light.no_catchers = source.no_catchers != 0;

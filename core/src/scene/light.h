@@ -35,6 +35,7 @@ struct LightDescription {
   uint32_t hidden_from = 0; // RayKind bits
   bool no_shadow = false;
   bool no_catchers = false;
+  bool opening = false; // AREA: no lamp, see Openings
   uint32_t light_group = 0; // 0 = none
   LightLinks links;
   uint32_t lit_surfaces = 0; // 0: all

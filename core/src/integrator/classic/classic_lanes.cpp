@@ -172,6 +172,9 @@ void ClassicIntegrator::sample(uint32_t number, const Doubles (&p)[3], const Flo
     asking |= uint32_t(!lights.behind(number, get(p, lane), get(ng, lane))) << lane;
   if (number >= lights.lamps().size() && !LightSet::lit_by(lights.hidden_from(number)))
     asking = 0;
+  // A constant environment is ambient light, also where openings let paths sample it.
+  if (number == lights.environment_light() && !lights.environment().varies())
+    asking = 0;
   const LightLinks links = lights.links(number);
   for (uint32_t lane = 0; lane < surfaces_.count() && links.unlit_sets != 0; ++lane)
     asking &= ~(uint32_t{!links.reaches(surfaces_.instance(lane).receiver_set)} << lane);

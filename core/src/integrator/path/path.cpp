@@ -205,18 +205,20 @@ void PathIntegrator::add_environment() {
   add_environment(behind_, [&](const Path &path, const glm::vec3 &radiance, float) { film_.add_behind(path, radiance); });
 }
 
-// Calls arrive(path, radiance, weight) for paths that see the environment. A constant one is no light that is sampled:
-// its weight is 1.
+// Calls arrive(path, radiance, weight) for paths that see the environment. A constant one that is no light that is sampled has
+// the weight 1.
 template <class Arrive> void PathIntegrator::add_environment(std::span<const size_t> paths, Arrive &&arrive) {
   const Environment &environment = scene_.lights.environment();
-  for (size_t i = 0; i < paths.size() && !environment.varies(); ++i)
+  const bool is_looked_at = environment.varies() || environment.is_light();
+  for (size_t i = 0; i < paths.size() && !is_looked_at; ++i)
     arrive(queue_.paths[paths[i]], environment.constant(), 1.0f);
-  for (size_t first = 0; first < paths.size() && environment.varies(); first += kBlockLanes) {
+  for (size_t first = 0; first < paths.size() && is_looked_at; first += kBlockLanes) {
     const auto now = paths.subspan(first, std::min<size_t>(kBlockLanes, paths.size() - first));
     for (uint32_t lane = 0; lane < now.size(); ++lane) {
       const Path &path = queue_.paths[now[lane]];
-      met_.add_miss(lane, queue_.rays[now[lane]].d, path.light_path(0.0, 0.0),
-                    path.kinds & kCameraKinds ? &queue_.from[now[lane]].p : nullptr);
+      const Scattering &from = queue_.from[now[lane]];
+      met_.add_miss(lane, from, queue_.rays[now[lane]].d, path.light_path(0.0, 0.0),
+                    path.kinds & kCameraKinds ? &from.p : nullptr);
     }
     met_.look_at_sky(uint32_t(now.size()));
     for (uint32_t lane = 0; lane < now.size(); ++lane)

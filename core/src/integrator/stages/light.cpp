@@ -153,7 +153,7 @@ void LightStage::sample(uint32_t light, uint32_t lanes, const Doubles (&p)[3], c
     skies_ = lanes;
     for (uint32_t rest = lanes; rest != 0; rest &= rest - 1)
       sky_.set_path(uint32_t(std::countr_zero(rest)), {}, nullptr);
-    return sample_sky(numbers, 0);
+    return sample_sky(p, numbers, 0);
   }
   // Choose the faces by power; the rest of the random number places the point on the face.
   emitters_ = lanes;
@@ -248,9 +248,11 @@ void LightStage::sample_shape(uint32_t lane, const Doubles (&p)[3], const Vertex
 }
 
 // transmits: bits of the lanes whose surfaces transmit light.
-void LightStage::sample_sky(const VertexNumbers &numbers, uint32_t transmits) {
+void LightStage::sample_sky(const Doubles (&p)[3], const VertexNumbers &numbers, uint32_t transmits) {
   if (skies_ == 0)
     return;
+  for (int axis = 0; axis < 3 && sky_.asks_places(); ++axis)
+    std::copy_n(p[axis], kBlockLanes, directions_.p[axis]);
   for (const bool through : {false, true}) {
     uint32_t rest = skies_ & (through ? transmits : ~transmits);
     if (rest == 0)
@@ -279,6 +281,7 @@ void LightStage::weigh_from_behind(const LobeBlock &lobes) {
 }
 
 SkyStage::SkyStage(const Scene &scene, const Camera *camera) : scene_(scene), values_(scene.world.program.value_count()) {
+  openings_ = scene.lights.openings();
   if (scene.lights.environment().is_light())
     for (const bool transmits : {false, true})
       maps_[transmits] = scene.lights.environment().table(transmits);
@@ -286,11 +289,23 @@ SkyStage::SkyStage(const Scene &scene, const Camera *camera) : scene_(scene), va
   nodes_.surface = false;
 }
 
-void SkyStage::sample(SkyBlock &block, bool transmits) const { light_kernel().sample_sky(maps_[transmits], block); }
+void SkyStage::sample(SkyBlock &block, bool transmits) const {
+  if (openings_.any())
+    light_kernel().sample_sky_through(maps_[transmits], openings_, block);
+  else
+    light_kernel().sample_sky(maps_[transmits], block);
+}
 
-void SkyStage::find_density(SkyBlock &block, bool transmits) const { light_kernel().sky_density(maps_[transmits], block); }
+void SkyStage::find_density(SkyBlock &block, bool transmits) const {
+  if (openings_.any())
+    light_kernel().sky_density_through(maps_[transmits], openings_, block);
+  else
+    light_kernel().sky_density(maps_[transmits], block);
+}
 
 void SkyStage::look(const Doubles (&wi)[3], uint32_t lanes) {
+  if (!scene_.world.varies())
+    return;
   nodes_.used = lanes;
   for (int axis = 0; axis < 3; ++axis)
     for (int lane = 0; lane < kBlockLanes; ++lane) {

@@ -12,16 +12,18 @@
 #include "integrator/stages/surface.h"
 #include "lights/emission.h"
 #include "lights/light_choice.h"
+#include "lights/openings.h"
 #include "nodes/run.h"
 #include "simd/block.h"
 
 namespace lancer {
 
 // Directions to the environment, and the density with which its map gives them. u: in [0, 1) in all lanes, by the light stage;
-// wi: by the kernel or the stage of met lights; pdf: by the kernel.
+// wi: by the kernel or the stage of met lights; pdf: by the kernel. p: from where the directions go, in scenes with openings.
 struct alignas(64) SkyBlock {
   Floats u[2];
   Doubles wi[3], pdf; // wi: unit
+  Doubles p[3];
 };
 
 // The environment for lanes of directions: its radiance there, and directions sampled by its brightness.
@@ -34,6 +36,8 @@ public:
   void sample(SkyBlock &block, bool transmits) const;
   // Computes the densities of the block's directions.
   void find_density(SkyBlock &block, bool transmits) const;
+  // Whether directions depend on the place that they go from: the block's p must be set.
+  bool asks_places() const { return openings_.any(); }
 
   // Evaluates the environment: set the path of each lane, look, then read the results. eye: where a camera ray begins, null for
   // any other ray.
@@ -43,6 +47,8 @@ public:
   }
   void look(const Doubles (&wi)[3], uint32_t lanes);
   glm::vec3 radiance(uint32_t lane) const {
+    if (!scene_.world.varies())
+      return scene_.world.radiance.value;
     const auto &value = values_[size_t(scene_.world.radiance.node)].of;
     return {value[0][lane], value[1][lane], value[2][lane]};
   }
@@ -50,6 +56,7 @@ public:
 private:
   const Scene &scene_;
   DirectionTable maps_[2]; // by transmits
+  Openings openings_;
   NodeBlock nodes_{};
   std::vector<NodeLanes> values_;
 };
@@ -124,6 +131,9 @@ struct LightKernel {
   // sample_sky samples directions of the environment from the numbers u; sky_density computes the density of given directions.
   void (*sample_sky)(const DirectionTable &map, SkyBlock &block);
   void (*sky_density)(const DirectionTable &map, SkyBlock &block);
+  // The same in scenes with openings.
+  void (*sample_sky_through)(const DirectionTable &map, const Openings &openings, SkyBlock &block);
+  void (*sky_density_through)(const DirectionTable &map, const Openings &openings, SkyBlock &block);
   void (*light)(const LitVertices &vertices, const LightSamples &samples, LitBlock &lit);
   // Returns the bits of the lanes that may hit the light; other lanes miss it.
   uint32_t (*meets)(const SegmentBlock &segments, const Light &light);
@@ -161,7 +171,7 @@ public:
       of_lane.width = of_lane.spread = std::min(of_lane.spread, scene_.lights.environment().finest());
       sky_.set_path(lane, of_lane, nullptr);
     });
-    sample_sky(numbers, lobes.transmits);
+    sample_sky(surfaces.p, numbers, lobes.transmits);
     weigh_from_behind(lobes);
   }
   // Samples this light in all of these lanes, seen from p at these times; an emitter's face by its power. The nodes of the
@@ -194,7 +204,7 @@ private:
   void reach(LightPath<float> &path, double distance) const;
   glm::vec3 face_emission(uint32_t lane, LightPath<float> path);
   void sample_shape(uint32_t lane, const Doubles (&p)[3], const VertexNumbers &numbers, LightPath<float> path);
-  void sample_sky(const VertexNumbers &numbers, uint32_t transmits);
+  void sample_sky(const Doubles (&p)[3], const VertexNumbers &numbers, uint32_t transmits);
   void weigh_from_behind(const LobeBlock &lobes);
   // Multiplies the radiance of lamps by what their nodes say.
   template <class PathOf> void shade_lamps(PathOf &&path) {

@@ -75,6 +75,20 @@ void sample_lamp(const Light &lamp, const Doubles (&p)[3], const VertexNumbers &
     store(block.pdf + first, direction_pdf(map, narrow(load3(block.wi, first))));
 }
 
+[[gnu::flatten]] void sample_sky_through(const DirectionTable &map, const Openings &openings, SkyBlock &block) {
+  for (int first = 0; first < kBlockLanes; first += kLanes) {
+    const DirectionSample<F> sample = sample_through<F>(map, openings, load3(block.p, first), load(block.u[0] + first),
+                                                        load(block.u[1] + first));
+    store3(block.wi, first, sample.direction);
+    store(block.pdf + first, sample.pdf);
+  }
+}
+
+[[gnu::flatten]] void sky_density_through(const DirectionTable &map, const Openings &openings, SkyBlock &block) {
+  for (int first = 0; first < kBlockLanes; first += kLanes)
+    store(block.pdf + first, density_through<F>(map, openings, load3(block.p, first), load3(block.wi, first)));
+}
+
 [[gnu::flatten]] void sample_faces(FaceBlock &block) {
   for (int first = 0; first < kBlockLanes; first += kLanes) {
     if (!(block.used >> first))
@@ -183,7 +197,9 @@ void light(const LitVertices &vertices, const LightSamples &samples, LitBlock &l
 } // namespace
 
 namespace LANCER_ISA {
-const LightKernel light_kernel = {choose, sample_lamps, sample_lamp, sample_faces, sample_sky, sky_density, light, meets, meet};
+const LightKernel light_kernel = {choose,      sample_lamps,       sample_lamp,         sample_faces, sample_sky,
+                                  sky_density, sample_sky_through, sky_density_through, light,        meets,
+                                  meet};
 }
 
 } // namespace lancer

@@ -93,8 +93,11 @@ float MetLights::emission_weight(const Scattering &from, const Surface &surface)
   return emitter ? emitter_weight(scene_, from, *emitter, surface) : 1.0f;
 }
 
-void MetLights::add_miss(uint32_t lane, const glm::dvec3 &d, LightPath<float> path, const glm::dvec3 *eye) {
+void MetLights::add_miss(uint32_t lane, const Scattering &from, const glm::dvec3 &d, LightPath<float> path,
+                         const glm::dvec3 *eye) {
   put(glm::normalize(d), misses_.wi, lane);
+  if (sky_.asks_places())
+    put(from.p, misses_.p, lane);
   // A ray that hits nothing has one scattering more in its depth, as in Cycles, and no end.
   path.depth += 1.0f;
   path.length = std::numeric_limits<float>::max();

@@ -57,9 +57,9 @@ public:
   // Returns the weight of the emission of a surface that a ray has hit; 0 where its light does not reach the last scattering.
   float emission_weight(const Scattering &from, const Surface &surface) const;
 
-  // The environment in the directions of rays that hit nothing: add the rays lane by lane, look, then read the results. path:
-  // Light Path of the ray; eye: where a camera ray begins, null for any other ray.
-  void add_miss(uint32_t lane, const glm::dvec3 &d, LightPath<float> path, const glm::dvec3 *eye);
+  // The environment in the directions of rays that hit nothing: add the rays lane by lane, look, then read the results. from:
+  // the last scattering; path: Light Path of the ray; eye: where a camera ray begins, null for any other ray.
+  void add_miss(uint32_t lane, const Scattering &from, const glm::dvec3 &d, LightPath<float> path, const glm::dvec3 *eye);
   void look_at_sky(uint32_t count);
   glm::vec3 sky_radiance(uint32_t lane) const { return sky_.radiance(lane); }
   float sky_weight(uint32_t lane, const Scattering &from) const;
