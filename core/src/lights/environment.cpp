@@ -260,7 +260,10 @@ void Environment::make_maps(const BuildContext &context, bool glass) {
         map.add_disc(suns[i].axis, suns[i].half_angle, of_suns * (fluxes[i] / light));
     return map;
   };
-  maps_ = std::make_shared<const Maps>(map_of(float(sky)), glass ? map_of(0.0f) : DirectionMap());
+  // A world that gives light samples on some surfaces alone loses light on the others by their weight: as in Cycles, where they
+  // are in proportion to the radiance.
+  const float least = world_.lit_surfaces != 0 ? 0.0f : float(sky);
+  maps_ = std::make_shared<const Maps>(map_of(least), glass ? map_of(0.0f) : DirectionMap());
 }
 
 double Environment::flux_of(const Sun &sun, const ProgramView &plain) const {
