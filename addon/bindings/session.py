@@ -95,6 +95,10 @@ class PictureError:
     clipped_direct: float
     cut: float
     no_caustics: float
+    filtered: float
+    filtered_error: float
+    guessed: float
+    guessed_error: float
     missing: float
     planned_samples: float
     least_samples: int

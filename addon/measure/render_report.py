@@ -19,6 +19,9 @@ REMOVED = {
     "error_cut": "limits of kinds of bounces and of lamps have removed about",
     "error_no_caustics": "the lack of caustics has removed about",
 }
+# Settings that take light away or add some, by the entry with the share that they take away, which has a neighbour ..._error.
+CHANGED = {"error_filtered": "Filter Glossy", "error_guessed": "Fast GI"}
+BIASES = (*REMOVED, *(f"{name}{end}" for name in CHANGED for end in ("", "_error")))
 
 
 def percent(share):
@@ -26,6 +29,15 @@ def percent(share):
     if not math.isfinite(share):
         return "unknown"
     return f"{100.0 * share:.3g} %" if share >= 0.0995 else f"{100.0 * share:.2g} %"
+
+
+def changed_light(numbers, name):
+    """Return what a setting has done to the light, by an entry of CHANGED; "" if there is nothing to report."""
+    share, half = numbers.get(name, 0.0), numbers.get(f"{name}_error", 0.0)
+    if max(abs(share), half) <= NOTHING:
+        return ""
+    done = "taken away" if share > 0.0 else "added"
+    return f"{CHANGED[name]} has {done} about {percent(abs(share))} of the light, give or take {percent(half)}"
 
 
 def interval(numbers):
@@ -61,7 +73,7 @@ def account(session, schedule):
     numbers |= {"denoised": "", "denoised_moved": 0.0}
     numbers |= {f"denoised_error{end}": math.inf for end in ("", "_low", "_high")}
     numbers["error"] = error.error
-    for name in ("low", "high", "cannot_exclude", *(name[len("error_") :] for name in REMOVED), "missing"):
+    for name in ("low", "high", "cannot_exclude", *(name[len("error_") :] for name in BIASES), "missing"):
         numbers[f"error_{name}"] = getattr(error, name)
     return numbers
 
@@ -150,10 +162,7 @@ def biases(numbers, settings):
     for name in ("error_clipped_direct", "error_cut", "error_no_caustics"):
         if numbers[name] > NOTHING:
             yield f"{REMOVED[name]} {percent(numbers[name])} of the light: the picture is too dark by this share"
-    if settings.filter_glossy > 0.0:
-        yield f"filter glossy {settings.filter_glossy:g} blurs light behind blurred reflections: how much is not measured"
-    if settings.fast_bounces or settings.ambient > 0.0:
-        yield "Fast GI replaces or adds bounced light by a guess: how far the picture is off is not measured"
+    yield from filter(None, (changed_light(numbers, name) for name in CHANGED))
     if settings.integrator == Integrator.PATH:
         missing = numbers["error_missing"]
         if math.isinf(missing):
@@ -170,7 +179,7 @@ def biases(numbers, settings):
 
 def fields(numbers, settings):
     """Yield (name, text) pairs for the metadata of a file."""
-    for name in ("error", "error_low", "error_high", "error_cannot_exclude", *REMOVED, "error_missing"):
+    for name in ("error", "error_low", "error_high", "error_cannot_exclude", *BIASES, "error_missing"):
         yield name, f"{numbers[name]:.6g}"
     yield "samples", str(numbers["samples"])
     yield "samples_most", str(numbers["samples_most"])

@@ -3,7 +3,7 @@
 import bpy
 
 from ..engine import last_statistics
-from ..measure.render_report import NOTHING, REMOVED, percent
+from ..measure.render_report import CHANGED, NOTHING, REMOVED, changed_light, percent
 from ..settings import presets
 from .panel import LancerRenderPanel, setting, uses_classic
 from .sentences import sentence
@@ -14,14 +14,17 @@ _REPLACED = (
     "report differences by them, and how much light each limit removes."
 )
 
-_FAST = "Bounced light is replaced by a guess, or the guess is added to it. How far the picture is off is not measured."
+_FAST = "Bounced light is replaced by a guess, or the guess is added to it."
 
 
 def draw_biases(column, context, *names):
-    """Draw the share of light that limits have removed from the last render, by names in its statistics, where there is any."""
+    """Draw what limits have done to the light of the last render, by names in its statistics, where they have changed any."""
     numbers = last_statistics.get(context.scene.name, {})
     for name in names:
-        if numbers.get(name, 0.0) > NOTHING:
+        if name in CHANGED:
+            if told := changed_light(numbers, name):
+                sentence(column, context, told)
+        elif numbers.get(name, 0.0) > NOTHING:
             told = f"{REMOVED[name]} {percent(numbers[name])} of the light of the last render"
             sentence(column, context, told[0].upper() + told[1:])
 
@@ -73,6 +76,7 @@ class LANCER_RENDER_PT_caustics(LancerRenderPanel, bpy.types.Panel):
         column = self._column()
         column.active = settings.integrator == "PATH"
         column.prop(settings, "filter_glossy")
+        draw_biases(column, context, "error_filtered")
         setting(column, "caustics_reflective", cycles, text="Reflective")
         setting(column, "caustics_refractive", cycles, text="Refractive")
         draw_biases(column, context, "error_no_caustics")
@@ -104,6 +108,7 @@ class LANCER_RENDER_PT_fast_gi(LancerRenderPanel, bpy.types.Panel):
             column.prop(cycles, "ao_bounces", text="Viewport Bounces")
             column.prop(cycles, "ao_bounces_render", text="Render Bounces")
         sentence(column, context, _FAST)
+        draw_biases(column, context, "error_guessed")
 
 
 class LANCER_RENDER_PT_classic(LancerRenderPanel, bpy.types.Panel):

@@ -11,7 +11,7 @@ from addon.measure.schedule import CANCELLED, SAMPLES, TARGET, TIME
 
 def numbers(error, bound, ended_by=SAMPLES, samples=100, seconds=20.0, **more):
     values = {"error": error, "error_low": 0.8 * error, "error_high": 0.9 * bound, "error_cannot_exclude": 0.1 * bound}
-    values |= dict.fromkeys((*render_report.REMOVED, "error_missing"), 0.0)
+    values |= dict.fromkeys((*render_report.BIASES, "error_missing"), 0.0)
     values |= {"ended_by": ended_by, "seconds": seconds, "denoised": ""}
     values |= {"split_lights": 1, "split_paths": 1, "target_of_denoised": True, "denoised_moved": 0.0}
     values |= {f"denoised_error{end}": math.inf for end in ("", "_low", "_high")}

@@ -1309,6 +1309,9 @@ typedef struct lancer_error {
   double clipped_direct;  /* the same of clamp_direct */
   double cut;             /* estimated share of the light beyond the limits of kinds of bounces and of lamps */
   double no_caustics;     /* estimated share of the caustics that no_reflections and no_refractions leave out */
+  /* Estimated shares of the light that a setting takes away, negative where it adds light, and half of their 95 % intervals. */
+  double filtered, filtered_error; /* filter_glossy */
+  double guessed, guessed_error;   /* fast_bounces and ambient */
   double missing;         /* PATH: estimated share of light beyond max_bounces, extrapolated from the last bounces; else 0 */
   double planned_samples; /* total pixel samples planned by the last lancer_session_refine */
   uint32_t least_samples, most_samples; /* per pixel */
@@ -1354,11 +1357,13 @@ LANCER_API lancer_status lancer_compose_catchers(uint64_t count, const float *ma
  *
  * A part is a string of bytes without padding. Numbers are little-endian; f32 and f64 are those of IEEE 754; pixels are in the
  * order of their tile.
- *   char[8] "LANCERPT", u32 format (1), u32 LANCER_ABI_VERSION, u64 size of the part in bytes
+ *   char[8] "LANCERPT", u32 format (2), u32 LANCER_ABI_VERSION, u64 size of the part in bytes
  *   lancer_part
  *   u64[4] camera rays, bounce rays, shadow rays, vertices
- *   i64[6][32] luminance that clamp_indirect, clamp_direct, limits of bounces and the lack of caustics have removed, and that
- * of the last bounce and the one before: digits of base 256, the lowest one in units of 2^-150 for each tile, by rising number:
+ *   i64[10][32] luminance that clamp_indirect, clamp_direct, limits of bounces and the lack of caustics have removed, that of
+ *     the last bounce and the one before, that which filter_glossy takes away and the sum of its squares over samples, and the
+ *     same of Fast GI: digits of base 256, the lowest one in units of 2^-150
+ *   for each tile, by rising number:
  *     u32 tile, u32 n, u32 d, u32 m (1 if the tile has sample 0, else 0)
  *     n times u32 start, u32 level: sums of the samples start ... start + 2^level - 1, by rising start, a multiple of 2^level
  *     n times f64[pixels][channels] sums of the summed passes in order of pass, as film_passes.cpp lists them, VECTOR followed

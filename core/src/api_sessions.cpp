@@ -129,8 +129,22 @@ lancer_status lancer_session_error(lancer_session session, double confidence, la
     const std::lock_guard lock(object->mutex);
     const SessionError from = object->session.error(confidence);
     const PictureError &picture = from.picture;
-    *error = {picture.error, picture.low,      picture.high, picture.cannot_exclude, from.clipped,       from.clipped_direct,
-              from.cut,      from.no_caustics, from.missing, from.planned_samples,   from.least_samples, from.most_samples};
+    *error = {picture.error,
+              picture.low,
+              picture.high,
+              picture.cannot_exclude,
+              from.clipped,
+              from.clipped_direct,
+              from.cut,
+              from.no_caustics,
+              from.filtered,
+              from.filtered_error,
+              from.guessed,
+              from.guessed_error,
+              from.missing,
+              from.planned_samples,
+              from.least_samples,
+              from.most_samples};
     return LANCER_OK;
   });
 }

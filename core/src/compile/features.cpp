@@ -141,9 +141,13 @@ uint32_t principled_shapes(const PrincipledDescription &principled) {
   return shapes;
 }
 
+uint32_t shapes_of(const LobeDescription &lobe) {
+  return lobe.principled ? principled_shapes(*lobe.principled) : shapes_of(lobe.kind);
+}
+
 void add_material(const MaterialView &material, Features &features) {
   for (const LobeDescription &lobe : material.lobes) {
-    features.shapes |= lobe.principled ? principled_shapes(*lobe.principled) : shapes_of(lobe.kind);
+    features.shapes |= shapes_of(lobe);
     if (is_glass(lobe))
       features.bits |= kFeatureGlass;
     if (goes_below(lobe))
@@ -168,6 +172,12 @@ void add_material(const MaterialView &material, Features &features) {
 }
 
 } // namespace
+
+bool has_facets(const MaterialView &material) {
+  return std::ranges::any_of(material.lobes, [](const LobeDescription &lobe) {
+    return (shapes_of(lobe) & (shape_bit(LobeShape::Microfacet) | shape_bit(LobeShape::Ashikhmin))) != 0;
+  });
+}
 
 Features find_features(const Description &description) {
   Features features;

@@ -54,6 +54,8 @@ std::string feature_names(const Features &features);
 
 // Whether a lobe may refract.
 bool is_glass(const LobeDescription &lobe);
+// Whether some lobe of the material may be one of facets, which a least roughness changes.
+bool has_facets(const MaterialView &material);
 // Whether light may pass through the surface, straight or refracted.
 bool lets_light_through(const MaterialView &material);
 

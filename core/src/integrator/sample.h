@@ -79,9 +79,18 @@ enum LightPass : uint32_t {
   kLightPasses = 12
 };
 
-// Paths that measure what limits remove: their light goes into no film. Bounces: of a path that a limit of kinds ends;
-// Caustics: of the lobes that a path lacks.
-enum class Ghost : uint8_t { None = 0, Bounces, Caustics };
+// Paths that measure what limits do: their light goes into no film. Bounces: of a path that a limit of kinds ends; Caustics: of
+// the lobes that a path lacks; these go on without the limits. The others go on in pairs with the same numbers, one as the
+// settings say and one without a setting, whose light differs by what the setting changes: Blurred and Sharp by filter_glossy,
+// Guessed and Followed by fast_bounces.
+enum class Ghost : uint8_t { None = 0, Bounces, Caustics, Blurred, Sharp, Guessed, Followed };
+
+// Of so many paths that a limit changes, one sends a ghost or a pair of ghosts, which stand for all.
+constexpr uint32_t paths_of(Ghost ghost) {
+  return ghost == Ghost::None ? 1 : ghost == Ghost::Bounces || ghost == Ghost::Caustics ? 16 : 64;
+}
+// Whether a path obeys the limits of kinds of bounces and of caustics.
+inline bool obeys_limits(Ghost ghost) { return ghost != Ghost::Bounces && ghost != Ghost::Caustics; }
 
 // The contribution of one sample to the film. All members are floats; those that the film sums are in the order of their
 // passes.
@@ -141,11 +150,26 @@ struct Energy {
   ExactSum clipped, clipped_direct; // by clamping of indirect and of direct light
   ExactSum cut, no_caustics;        // by limits of kinds of bounces and of lamps, and by the lack of caustics: see Ghost
   ExactSum last, before_last;       // found by the last bounce that is followed, and by the one before
+  // What a setting takes away from each sample, negative where it adds light, and its square.
+  struct Change {
+    ExactSum sum, squares;
+
+    // Ignores values that are not finite, because the film drops their sample.
+    void add(float light) {
+      if (const float square = light * light; std::isfinite(square)) {
+        sum += light;
+        squares += square;
+      }
+    }
+  };
+  Change filtered, guessed; // by filter_glossy, by Fast GI: fast_bounces and ambient
 
   // The sums in the order of lancer.h.
-  static constexpr uint32_t kSums = 6;
+  static constexpr uint32_t kSums = 10;
   template <class Of> static std::array<decltype(&std::declval<Of &>().clipped), kSums> sums(Of &energy) {
-    return {&energy.clipped, &energy.clipped_direct, &energy.cut, &energy.no_caustics, &energy.last, &energy.before_last};
+    return {&energy.clipped,      &energy.clipped_direct,   &energy.cut,         &energy.no_caustics,
+            &energy.last,         &energy.before_last,      &energy.filtered.sum, &energy.filtered.squares,
+            &energy.guessed.sum,  &energy.guessed.squares};
   }
 
   // Returns an estimate of the light of all bounces beyond the last: the sum of a geometric series with the ratio of the last

@@ -11,7 +11,7 @@
 namespace lancer {
 
 inline constexpr std::string_view kPartMark = "LANCERPT";
-inline constexpr uint32_t kPartFormat = 1;
+inline constexpr uint32_t kPartFormat = 2;
 // The head and the end of a part: mark, format, interface, size; checksum.
 inline constexpr size_t kPartHead = kPartMark.size() + 2 * sizeof(uint32_t) + sizeof(uint64_t), kPartEnd = sizeof(uint64_t);
 

@@ -334,6 +334,21 @@ SampleResult Session::replay(const SampleAddress &address, std::vector<PathVerte
   return result;
 }
 
+namespace {
+
+// Returns the share of the light that a setting takes away, and half of its 95 % interval. light, samples: of the picture, and
+// the number of samples that each had a change.
+std::pair<double, double> share_of(const Energy::Change &change, double light, double samples) {
+  constexpr double kNormal95 = 1.959964;
+  const double sum = change.sum.value(), whole = light + sum;
+  if (!(whole > 0.0))
+    return {0.0, std::numeric_limits<double>::infinity()};
+  const double variance = std::max(change.squares.value() - sum * sum / std::max(samples, 1.0), 0.0);
+  return {sum / whole, kNormal95 * std::sqrt(variance) * light / (whole * whole)};
+}
+
+} // namespace
+
 SessionError Session::error(double confidence) const {
   SessionError result;
   const LuminanceMap map(film_, pool_.size());
@@ -356,6 +371,8 @@ SessionError Session::error(double confidence) const {
     result.clipped_direct = share(energy.clipped_direct);
     result.cut = share(energy.cut);
     result.no_caustics = share(energy.no_caustics);
+    std::tie(result.filtered, result.filtered_error) = share_of(energy.filtered, light, double(counted_samples_));
+    std::tie(result.guessed, result.guessed_error) = share_of(energy.guessed, light, double(counted_samples_));
     result.missing = energy.beyond() / light;
   }
   result.planned_samples = planned_samples_;

@@ -44,6 +44,7 @@ struct SessionError {
   PictureError picture;
   // Shares of the picture's light, as lancer_error.
   double clipped = 0.0, clipped_direct = 0.0, cut = 0.0, no_caustics = 0.0;
+  double filtered = 0.0, filtered_error = 0.0, guessed = 0.0, guessed_error = 0.0;
   double missing = 0.0; // share that paths beyond the depth limit would add, estimated from the last bounces
   uint32_t least_samples = 0, most_samples = 0;
   double planned_samples = 0.0; // further pixel samples that the last refine() predicted

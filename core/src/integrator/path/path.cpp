@@ -24,7 +24,7 @@ void PathIntegrator::run(std::span<const SampleAddress> addresses, std::span<Sam
     // Keep the light before the last bounces, from which the light beyond them is estimated.
     if (last_bounces_.due(turn))
       last_bounces_.note(
-          turn, queue_.paths.size(), settings_.splits.paths > 1 || walk_ || haunted_ || catches_,
+          turn, queue_.paths.size(), settings_.splits.paths > 1 || walk_ || haunted_ || guesses_ || catches_,
           [&](size_t i) { return queue_.paths[i].sample; }, gathered);
     // Add the light samples that no surface occludes.
     counts_.shadow +=
@@ -129,8 +129,11 @@ void PathIntegrator::add_lamps() {
 
 namespace {
 
-// One of so many paths that a limit changes sends a ghost.
-constexpr uint32_t kPathsOfGhost = 16;
+// Whether a path sends a ghost, by its address.
+bool sends(const Path &path, Ghost cause) {
+  constexpr uint32_t kOther = 0x9e3779b9; // numbers apart from those of estimates
+  return hash_combine(path.estimates_key(), kOther) % paths_of(cause) == 0;
+}
 
 } // namespace
 
@@ -138,21 +141,56 @@ constexpr uint32_t kPathsOfGhost = 16;
 void PathIntegrator::send_ghosts() {
   for (size_t i = 0, count = queue_.paths.size(); i < count; ++i) {
     const Path &path = queue_.paths[i];
-    if (!hits_[i].valid() || path.is_spent(settings_) || path.of_catchers)
+    if (!hits_[i].valid() || path.is_spent(settings_) || path.of_catchers || path.ghost != Ghost::None)
       continue;
     const bool over = path.is_over_limit(settings_);
-    if (!over && !(path.lacks_caustics() && (settings_.no_reflections || settings_.no_refractions)))
-      continue;
-    constexpr uint32_t kOther = 0x9e3779b9; // numbers apart from those of estimates
-    if (hash_combine(path.estimates_key(), kOther) % kPathsOfGhost != 0)
-      continue;
-    Path ghost = path;
-    ghost.haunt(over ? Ghost::Bounces : Ghost::Caustics, float(kPathsOfGhost));
-    queue_.paths.push_back(ghost);
-    queue_.rays.push_back(Ray(queue_.rays[i]));
-    queue_.from.push_back(Scattering(queue_.from[i]));
-    hits_.push_back(Hit(hits_[i]));
+    const Ghost cause = over ? Ghost::Bounces : Ghost::Caustics;
+    if (over || (path.lacks_caustics() && (settings_.no_reflections || settings_.no_refractions)))
+      if (sends(path, cause))
+        send_ghost(i, cause);
+    if (!over && !filtered_materials_.empty())
+      send_pair(i);
   }
+}
+
+// Adds a copy of a path that goes on from its surface.
+void PathIntegrator::send_ghost(size_t path, Ghost cause) {
+  Path ghost = queue_.paths[path];
+  ghost.haunt(cause, true);
+  queue_.paths.push_back(ghost);
+  queue_.rays.push_back(Ray(queue_.rays[path]));
+  queue_.from.push_back(Scattering(queue_.from[path]));
+  hits_.push_back(Hit(hits_[path]));
+}
+
+// Lets some paths go on with and without the filter from the first surface that it may change.
+void PathIntegrator::send_pair(size_t number) {
+  Path &path = queue_.paths[number];
+  const Hit &hit = hits_[number];
+  const uint32_t material = material_of(scene_.geometry, scene_.slots, hit.instance, hit.primitive);
+  if (path.filtered || !(path.least_alpha(settings_.filter_glossy) > 0.0f) || material == kNone ||
+      !filtered_materials_[material])
+    return;
+  path.filtered = true;
+  if (!sends(path, Ghost::Sharp))
+    return;
+  send_ghost(number, Ghost::Blurred);
+  send_ghost(number, Ghost::Sharp);
+}
+
+// Lets a path whose last ray Fast GI ends early go on also without that end, beside a copy of it. tmax: of the whole ray.
+void PathIntegrator::follow_guess(size_t number, double tmax) {
+  const Path &path = next_.paths[number];
+  if (path.ghost != Ghost::None || path.of_catchers || path.in_view || !sends(path, Ghost::Followed))
+    return;
+  for (const Ghost cause : {Ghost::Guessed, Ghost::Followed}) {
+    Path ghost = next_.paths[number];
+    ghost.haunt(cause, false);
+    next_.paths.push_back(ghost);
+    next_.from.push_back(Scattering(next_.from[number]));
+    next_.rays.push_back(Ray(next_.rays[number]));
+  }
+  next_.rays.back().tmax = tmax;
 }
 
 // Lets paths that meet a shadow catcher in the camera's view go on twice: among all objects, and among catchers alone.

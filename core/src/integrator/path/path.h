@@ -28,7 +28,7 @@ public:
   PathIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
       : scene_(scene), settings_(settings), spread_at_eye_(camera), width_at_eye_(PixelCone(camera).base),
         camera_(camera, scene.motion, settings), film_(scene, camera, settings), hit_(scene, camera), met_(scene, camera),
-        haunted_(changes_paths(settings)), catches_(settings.catchers && (scene.features & kFeatureCatchers)), queues_(scene),
+        haunted_(changes_paths(settings)), guesses_(settings.fast_bounces > 0), catches_(settings.catchers && (scene.features & kFeatureCatchers)), queues_(scene),
         textures_(scene), surface_(scene, camera, settings), light_(scene, &camera), occlusion_(scene, settings),
         ambient_(scene, settings.fast_distance), shadow_(scene, camera, settings), last_bounces_(settings.max_bounces) {
     if (std::ranges::any_of(scene.materials, [](const MaterialView &material) { return material.program.looks_around; }))
@@ -39,6 +39,8 @@ public:
       surface_.walk_below();
       walk_.emplace(scene);
     }
+    for (size_t i = 0; i < scene.materials.size() && settings.filter_glossy > 0.0f; ++i)
+      filtered_materials_.push_back(has_facets(scene.materials[i]));
     if (settings.bake)
       texels_.emplace(scene, camera, settings);
     PathIntegrator::set_splits(settings.splits);
@@ -69,10 +71,10 @@ private:
     }
   };
 
-  // Whether limits of kinds of bounces, or of caustics, change paths.
+  // Whether limits of kinds of bounces, or of caustics, or a filter change paths at surfaces.
   static bool changes_paths(const IntegratorSettings &settings) {
     const uint32_t least = std::min({settings.diffuse_bounces, settings.glossy_bounces, settings.transmission_bounces});
-    return least < settings.max_bounces || settings.no_reflections || settings.no_refractions;
+    return least < settings.max_bounces || settings.no_reflections || settings.no_refractions || settings.filter_glossy > 0.0f;
   }
 
   void start(std::span<const SampleAddress> addresses, std::span<SampleResult> results);
@@ -82,6 +84,9 @@ private:
   void add_lamps();
   void add_linked_lights();
   void send_ghosts();
+  void send_ghost(size_t path, Ghost cause);
+  void send_pair(size_t path);
+  void follow_guess(size_t path, double tmax);
   void send_among_catchers();
   void add_environment();
   template <class Arrive> void add_environment(std::span<const size_t> paths, Arrive &&arrive);
@@ -124,7 +129,9 @@ private:
   HitStage hit_;
   MetLights met_;
   std::optional<LinkedLights> linked_; // if some light passes blockers
-  const bool haunted_;                 // limits of kinds of bounces or caustics change paths
+  const bool haunted_;                 // limits of kinds of bounces or caustics, or a filter, change paths
+  const bool guesses_;                 // Fast GI ends paths
+  std::vector<bool> filtered_materials_; // a filter may change their lobes; empty without one
   const bool catches_;                 // paths may meet shadow catchers
   ShadingQueues queues_;
   TexturePrefetch textures_;

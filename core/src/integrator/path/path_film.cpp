@@ -17,6 +17,10 @@ void PathFilm::begin(std::span<const SampleAddress> addresses, std::span<SampleR
   only_combined_ = !trace && passes.only_places() && (!passes.places() || addresses.front().sample > 0);
   results_ = results;
   energy = {};
+  if (settings_.filter_glossy > 0.0f)
+    filtered_.assign(results.size(), 0.0f);
+  if (settings_.fast_bounces > 0 || settings_.ambient > 0.0f)
+    guessed_.assign(results.size(), 0.0f);
   indirect_.assign(results.size() * sums(), glm::vec3(0.0f));
   catchers_.begin(results.size(), sums());
   shares_.resize(indirect_.size());
@@ -35,6 +39,10 @@ void PathFilm::end() {
     if (catchers_.keeps())
       catchers_.end(sample, results_[sample], *extras_);
   }
+  for (const float change : filtered_)
+    energy.filtered.add(change);
+  for (const float change : guessed_)
+    energy.guessed.add(change);
 }
 
 namespace {
@@ -104,13 +112,31 @@ glm::vec3 PathFilm::clamped_direct(const glm::vec3 &light, float parts, bool in_
   return kept;
 }
 
-void PathFilm::add_removed(Ghost ghost, const glm::vec3 &light) {
-  Energy::remove(ghost == Ghost::Bounces ? energy.cut : energy.no_caustics, luminance(light));
+void PathFilm::add_removed(uint32_t sample, Ghost ghost, const glm::vec3 &light) {
+  const float found = luminance(light);
+  switch (ghost) {
+  case Ghost::None:
+    break;
+  case Ghost::Bounces:
+    Energy::remove(energy.cut, found);
+    break;
+  case Ghost::Caustics:
+    Energy::remove(energy.no_caustics, found);
+    break;
+  case Ghost::Blurred:
+  case Ghost::Sharp:
+    filtered_[sample] += ghost == Ghost::Sharp ? found : -found;
+    break;
+  case Ghost::Guessed:
+  case Ghost::Followed:
+    guessed_[sample] += ghost == Ghost::Followed ? found : -found;
+    break;
+  }
 }
 
 void PathFilm::add(const Path &path, const glm::vec3 &found, bool environment, uint32_t group) {
   if (path.ghost != Ghost::None)
-    return add_removed(path.ghost, found);
+    return add_removed(path.sample, path.ghost, found);
   SampleResult &result = results_[path.sample];
   // Light that was scattered at most once is direct.
   const bool indirect = path.scatterings > 1;
@@ -152,8 +178,10 @@ void PathFilm::add_lit(const WaitingLight &waiting, const glm::vec3 &light) {
     return;
   }
   if (waiting.ghost != Ghost::None)
-    return add_removed(waiting.ghost, light);
+    return add_removed(waiting.target, waiting.ghost, light);
   const glm::vec3 kept = waiting.indirect ? light : clamped_direct(light, waiting.parts, !waiting.of_catchers);
+  if (waiting.guessed)
+    guessed_[waiting.target] -= luminance(kept);
   if (waiting.of_catchers)
     return catchers_.add(waiting.target, waiting.target * sums() + waiting.sum, kept, waiting.indirect, *extras_);
   add_to_group(waiting.target, waiting.group, kept, waiting.indirect);

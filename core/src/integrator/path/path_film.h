@@ -128,7 +128,7 @@ public:
                       const OcclusionStage &occlusion);
 
   const LightPasses passes;
-  Energy energy; // of the batch
+  Energy energy; // of the batch; changes of samples are complete at the end
 
 private:
   // Sums of a sample: one for each of its paths and, if there are several, another one for the light found before the split.
@@ -148,7 +148,7 @@ private:
   }
   void add_indirect_groups(uint32_t sample, const glm::vec3 &factor);
   glm::vec3 clamped_direct(const glm::vec3 &light, float parts, bool in_picture);
-  void add_removed(Ghost ghost, const glm::vec3 &light);
+  void add_removed(uint32_t sample, Ghost ghost, const glm::vec3 &light);
   void record(const Path &path, const Surface &surface, const MaterialView &material, const glm::vec3 &normal,
               const glm::vec3 &opacity, double t);
   void record(const Path &path, const SurfaceStage &surfaces, uint32_t lane);
@@ -187,6 +187,8 @@ private:
   // Members indexed by the number of a sample in the batch, like results_.
   std::vector<Record> records_;
   std::vector<DenoisingGuides> guides_; // where passes for denoising are requested
+  // What filter_glossy and Fast GI take away, where they are on.
+  std::vector<float> filtered_, guessed_;
 };
 
 // Returns the opacity with which passes count a surface: Cycles' passes count the whole surface of a holdout object.

@@ -68,6 +68,7 @@ void PathIntegrator::add_ambient(uint32_t lanes) {
     WaitingLight waiting = film_.waiting(path, scene_.lights.environment().light_group());
     waiting.indirect = path.scatterings > 0;
     waiting.has_passes = false;
+    waiting.guessed = true;
     shadow_.push(ambient_.ray(lane, surface_), waiting, light, path.passed_through);
     if (shadow_.asks_light_path())
       shadow_.set_light_path(path.asking_path());
@@ -186,7 +187,9 @@ void PathIntegrator::scatter(uint32_t lane, uint32_t branch) {
   const bool splits = splitting_ >> lane & 1;
   const uint32_t sharers = splits ? settings_.splits.paths : path.sharers;
   glm::vec3 beta = get(block.beta, lane);
-  if (!ScatterStage::survives(path.scatterings + 1, numbers_.numbers.of[kVertexRoulette][lane], float(sharers), beta))
+  // Ghosts end like the paths for which they stand.
+  const float unit = float(sharers) / float(paths_of(path.ghost));
+  if (!ScatterStage::survives(path.scatterings + 1, numbers_.numbers.of[kVertexRoulette][lane], unit, beta))
     return;
   Path &next = branch_off(next_.paths, lane, branch);
   next.scatter(beta, scatter_.kind(lane), block.diffuse >> lane & 1, block.transmitted >> lane & 1, block.pdf[lane]);
@@ -203,8 +206,9 @@ void PathIntegrator::scatter(uint32_t lane, uint32_t branch) {
   Ray &ray = next_.rays.emplace_back();
   scatter_.write_ray(lane, surface_.hit(lane), next.kinds, surface_.surfaces().time[lane], ray);
   if (next.is_fast(settings_)) {
-    const double own = surface_.instance(lane).fast_distance;
+    const double own = surface_.instance(lane).fast_distance, whole = ray.tmax;
     ray.tmax = normalised_reach(own > 0.0 ? own : double(settings_.fast_distance), scene_) / glm::length(ray.d);
+    follow_guess(next_.paths.size() - 1, whole);
   }
 }
 

@@ -35,6 +35,7 @@ struct Path {
   bool after_diffuse = false; // a diffuse lobe has scattered the path
   Ghost ghost = Ghost::None;  // the light goes into no film
   bool fresh = false;         // a ghost that has not been scattered yet
+  bool filtered = false;      // a surface has been met whose lobes filter_glossy may change
   bool caught = false;        // the camera sees a shadow catcher here: the rest of the path is in no pass of light
   bool of_catchers = false;   // the path goes among shadow catchers alone
   float least_pdf = std::numeric_limits<float>::infinity(); // least density of a scattering, single directions apart
@@ -54,24 +55,27 @@ struct Path {
   }
   // Whether the rest of the path is replaced: its ray ends at a near surface, or sees a changed environment.
   bool is_fast(const IntegratorSettings &settings) const {
-    return settings.fast_bounces != 0 &&
+    return settings.fast_bounces != 0 && ghost != Ghost::Followed &&
            scatterings + 1 > settings.fast_bounces + story.transmission + uint32_t(story.glossy > 0);
   }
   // Whether a limit of a kind of scatterings ends the path there.
   bool is_over_limit(const IntegratorSettings &settings) const {
-    return ghost == Ghost::None && (story.diffuse > settings.diffuse_bounces || story.glossy > settings.glossy_bounces ||
-                                    story.transmission > settings.transmission_bounces);
+    return obeys_limits(ghost) && (story.diffuse > settings.diffuse_bounces || story.glossy > settings.glossy_bounces ||
+                                   story.transmission > settings.transmission_bounces);
   }
   // Whether the next surface shows no caustics, where the settings leave them out: the ray leaves a diffuse lobe.
-  bool lacks_caustics() const { return ghost == Ghost::None && (story.kinds & RayKind::Diffuse) != 0; }
+  bool lacks_caustics() const { return obeys_limits(ghost) && (story.kinds & RayKind::Diffuse) != 0; }
   // Returns the least alpha of glossy lobes at the next surface; filter: filter_glossy.
-  float least_alpha(float filter) const { return least_pdf < filter ? 0.5f * std::sqrt(1.0f - least_pdf / filter) : 0.0f; }
-  // Makes the path a ghost that stands for `weight` paths.
-  void haunt(Ghost cause, float weight) {
+  float least_alpha(float filter) const {
+    return least_pdf < filter && ghost != Ghost::Sharp ? 0.5f * std::sqrt(1.0f - least_pdf / filter) : 0.0f;
+  }
+  // Makes the path a ghost, at a surface or on the way from one.
+  void haunt(Ghost cause, bool at_surface) {
     ghost = cause;
-    fresh = split = true;
+    fresh = at_surface;
+    split = true;
     leads = in_view = false;
-    beta *= weight;
+    beta *= float(paths_of(cause));
   }
   // Sends the path among shadow catchers alone.
   void leave_others() {

@@ -15,6 +15,7 @@ struct WaitingLight {
   float parts = 1.0f;           // number of contributions that share the weight of this one
   bool has_passes = true;       // the light is in passes beside the picture
   bool occlusion = false;       // no light: the pass of ambient occlusion
+  bool guessed = false;         // the ambient light of Fast GI
   glm::vec3 share[2] = {glm::vec3(0.0f), glm::vec3(0.0f)}; // diffuse, glossy; the rest is transmission
 };
 
