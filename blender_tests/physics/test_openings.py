@@ -100,4 +100,4 @@ def test_openings_are_no_lamps_and_change_nothing_under_a_black_sky():
     black = dataclasses.replace(snapshot, world=World((0.0, 0.0, 0.0)))
     assert np.array_equal(tiny.render(black), tiny.render(opened))
     with Session.upload(opened) as session:
-        assert "openings" in session.scene.features().split()
+        assert "openings" in session.statistics().features.split()

@@ -159,6 +159,15 @@ def _sky(name, world, hidden=True):
     return Case(name, change(), change(hidden_from=everyone) if hidden else None)
 
 
+def _opened(snapshot):
+    window = Light("window", tiny.move(z=5), LightKind.AREA, size=(4, 4), emission=(0, 0, 0), opening=True)
+    return dataclasses.replace(snapshot, world=World(radiance=(0.5, 0.6, 0.7)), lights=(*snapshot.lights, window))
+
+
+def _filtered(snapshot):
+    return tiny.with_settings(_on(BALL, _lobe(LobeKind.GLOSSY, roughness=0.1))(snapshot), filter_glossy=1.0)
+
+
 def _camera(name, **fields):
     return Case(name, lambda s: dataclasses.replace(s, camera=dataclasses.replace(s.camera, **fields)))
 
@@ -292,10 +301,13 @@ CASES = (
     _lamp("sun with extent", kind=LightKind.SUN, emission=(2, 2, 2), sun_angle=0.05),
     _lamp("area lamp", kind=LightKind.AREA),
     _sky("even sky", World(radiance=(0.5, 0.6, 0.7))),
+    Case("portal under an even sky", _opened),
     _sky("pictured sky", World(radiance=NodeRef(1), nodes=_SKY_NODES)),
     _camera("depth of field", lens_radius=0.1),
     _settings("filter over several pixels", pixel_filter=PixelFilter.BLACKMAN_HARRIS, filter_width=3.0),
     _settings("clamped indirect light", clamp_indirect=10.0),
+    Case("gloss that is filtered behind matt surfaces", _filtered),
+    _settings("Fast GI", fast_bounces=1, fast_distance=1.0),
     _settings("pass: depth", passes=(Pass.COMBINED, Pass.DEPTH)),
     _settings("passes: light by component", passes=(Pass.COMBINED, Pass.DIFFUSE_DIRECT, Pass.DIFFUSE_INDIRECT)),
     _settings("passes: all", passes=tuple(Pass)),
