@@ -54,6 +54,7 @@ def export_settings(depsgraph, passes, world, messages, in_view=False):
         messages.add(f"{who}: {bounces} bounces are more than Classic follows, {DEEPEST_RECURSION} are used")
         bounces = DEEPEST_RECURSION
     samples = depsgraph.view_layer_eval.samples or own.samples
+    numbered = extras(passes)
     return snapshot.Settings(
         integrator=Integrator[own.integrator],
         samples=samples,
@@ -85,9 +86,10 @@ def export_settings(depsgraph, passes, world, messages, in_view=False):
         environment_reflections=own.environment_reflections,
         blended_features=bpy.app.version >= (5, 2),
         sky_vectors=bpy.app.version >= (5, 2),
+        even_choices=bpy.app.version < (4, 0) and numbered["aov_colors"] + numbered["aov_values"] > 0,
         features=Features[own.features],
         passes=tuple(sorted({Pass.COMBINED, *(item for item in passes if not isinstance(item, NumberedPass))})),
-        **extras(passes),
+        **numbered,
         threads=threads_of(scene),
         accelerator=Accelerator[own.accelerator],
         occlusion_distance=occlusion_distance(world),

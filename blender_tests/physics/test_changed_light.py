@@ -1,5 +1,6 @@
 """Filter Glossy and Fast GI change the light: the change that a render tells is that of two converged renders."""
 
+import dataclasses
 import math
 
 import numpy as np
@@ -72,9 +73,8 @@ def test_the_told_error_is_that_of_the_told_change(settings):
 def test_no_pair_changes_the_picture():
     """The picture of a filter that changes no lobe is the one without it, though its paths send pairs."""
     rough = Material("rough", lobes=(Lobe(LobeKind.GLOSSY, color=rgb(0.9), roughness=1.0),))
-    plain = tiny.with_settings(corner(8, 64))
-    materials = (plain.materials[0], rough, plain.materials[2])
-    plain = plain.replaced(materials=materials) if hasattr(plain, "replaced") else plain
+    plain = corner(8, 64)
+    plain = dataclasses.replace(plain, materials=(plain.materials[0], rough, plain.materials[2]))
     blurred = tiny.with_settings(plain, filter_glossy=10.0)
     assert np.array_equal(tiny.render(plain), tiny.render(blurred))
     with Session.upload(blurred) as session:

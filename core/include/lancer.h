@@ -1200,6 +1200,9 @@ typedef struct lancer_settings {
                                 over surfaces by their share of matt lobes, as in 5.2 */
   uint32_t sky_vectors;      /* [switch 0] VECTOR: 1 = also of samples that see no surface, as in Blender 5.2, where places of
                                 directions are multiplied by their depth along the camera's z */
+  uint32_t even_choices;     /* [switch 0] PATH: 1 = at the first surface of a path, the way straight on and each lobe are at
+                                least an eighth of the choices, as in Blender up to 3.6: AOV_* of surfaces behind it count
+                                the paths that pass */
   uint32_t features;         /* [choice 0 1] LANCER_FEATURES_SCENE: only the work that the scene requires; ALL: work for all
                                 features. Same pixels */
   uint32_t passes;           /* [bits 1 1073741823] 1u << LANCER_PASS_*; COMBINED is always kept */
@@ -1391,7 +1394,7 @@ typedef struct lancer_part {
   lancer_camera camera;
   lancer_settings settings;           /* features, threads and tile_size are 0 */
   uint32_t split_lights, split_paths; /* the numbers in use, as in settings */
-  uint32_t tiles;                     /* number of tiles with samples */
+  uint64_t tiles;                     /* number of tiles with samples */
   uint32_t first, end;                /* the lowest number of a sample, and the highest plus 1 */
 } lancer_part;
 

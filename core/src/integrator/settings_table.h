@@ -54,6 +54,7 @@ enum class Pass : uint32_t {
   X(Amount, mist_falloff, 2.0f, 0xffffffffu)                                                                                   \
   X(Switch, blended_features, false, 0xffffffffu)                                                                              \
   X(Switch, sky_vectors, false, 0xffffffffu)                                                                                   \
+  X(Switch, even_choices, false, 0xffffffffu)                                                                                  \
   X(Choice, features, 0u, 1u)                                                                                                  \
   X(Bits, passes, 1u, 1073741823u)                                                                                             \
   X(Bits, mattes, 0u, 7u)                                                                                                      \

@@ -49,8 +49,8 @@ void write_energy(Writer &writer, const Energy &energy) {
 } // namespace
 
 uint64_t Identity::hash() const {
-  static_assert(sizeof(lancer_part) == 32 + 16 + 16 + sizeof(lancer_camera) + sizeof(lancer_settings) + 20, "no padding");
-  static_assert(sizeof(lancer_settings) == sizeof(uint32_t) * 45, "no padding");
+  static_assert(sizeof(lancer_part) == 32 + 16 + 16 + sizeof(lancer_camera) + sizeof(lancer_settings) + 24, "no padding");
+  static_assert(sizeof(lancer_settings) == sizeof(uint32_t) * 46, "no padding");
   static_assert(sizeof(lancer_camera) == 36 * sizeof(double) + 8 * sizeof(uint32_t) + 30 * sizeof(double), "no padding");
   lancer_settings fixed = settings;
 #define LANCER_FIX(kind, name, given, most)                                                                                    \

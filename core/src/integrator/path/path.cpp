@@ -166,10 +166,11 @@ void PathIntegrator::send_ghost(size_t path, Ghost cause) {
 // Lets some paths go on with and without the filter from the first surface that it may change.
 void PathIntegrator::send_pair(size_t number) {
   Path &path = queue_.paths[number];
+  if (path.filtered || !(path.least_alpha(settings_.filter_glossy) > 0.0f))
+    return;
   const Hit &hit = hits_[number];
   const uint32_t material = material_of(scene_.geometry, scene_.slots, hit.instance, hit.primitive);
-  if (path.filtered || !(path.least_alpha(settings_.filter_glossy) > 0.0f) || material == kNone ||
-      !filtered_materials_[material])
+  if (material == kNone || !filtered_materials_[material])
     return;
   path.filtered = true;
   if (!sends(path, Ghost::Sharp))
@@ -281,6 +282,8 @@ void PathIntegrator::put_in_lane(size_t number, const MaterialView &material) {
   if (surface_.limits())
     surface_.limit(lane, path.lacks_caustics(), path.fresh && path.ghost == Ghost::Caustics,
                    path.least_alpha(settings_.filter_glossy));
+  if (settings_.even_choices && path.scatterings + path.passed_through == 0)
+    surface_.even_choices(lane);
   if (material.estimates)
     surface_.set_key(lane, path.estimates_key());
   path_[lane] = number;

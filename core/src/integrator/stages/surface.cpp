@@ -234,7 +234,7 @@ void SurfaceStage::clear() {
   count_ = 0;
   hits_.used = hits_.on_mesh = hits_.smooth = hits_.exact = hits_.on_plane = hits_.on_cylinder = hits_.on_cone = 0;
   materials_.ends = materials_.seen_by_camera = materials_.after_diffuse = materials_.dimmed = 0;
-  materials_.no_caustics = materials_.only_caustics = 0;
+  materials_.no_caustics = materials_.only_caustics = materials_.even_choices = 0;
   materials_.leaving = false;
 }
 

@@ -55,6 +55,7 @@ struct alignas(64) MaterialBlock {
   bool no_reflections = false, no_refractions = false, blurs = false; // the settings
   uint32_t no_caustics = 0, only_caustics = 0;
   Floats least_alpha;
+  uint32_t even_choices = 0; // bits of lanes: each way on has a least share of the choices; by even_choices()
   uint32_t lacks = 0;   // bits of components whose lobes are absent; by lack()
   bool shares = false;  // diffuse and glossy shares of light are wanted
   bool spreads = false; // the spread of rays is wanted, for images with mipmaps
@@ -137,6 +138,8 @@ public:
     materials_.only_caustics |= uint32_t{only_caustics} << lane;
     materials_.least_alpha[lane] = least_alpha;
   }
+  // Gives each way on from a lane's surface a least share of the choices.
+  void even_choices(uint32_t lane) { materials_.even_choices |= 1u << lane; }
   // Leaves the lobes of these components out of a block, bits.
   void lack(uint32_t components) { materials_.lacks = components; }
   // Sets the key of the random numbers by which the lobes of a lane estimate their values, where the material has any such.

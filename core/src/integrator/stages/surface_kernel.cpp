@@ -59,13 +59,31 @@ struct NodeValues {
   }
 };
 
+// Returns the share of paths that pass straight through where each way on is at least kLeastChoice of the choices, as in Cycles
+// up to 3.6. all: the weight of all ways.
+LANCER_LANE F even_share(const Bsdf<F> &bsdf, F through, F all) {
+  constexpr float kLeastChoice = 0.125f;
+  const F least = F(kLeastChoice) * all, passing = max(through, least);
+  F raised = passing;
+  for (int i = 0; i < bsdf.count; ++i) {
+    const F weight = select(black(bsdf.lobes[i].color), F(0.0f), mean(bsdf.lobes[i].albedo));
+    raised = select(weight > F(0.0f), raised + max(weight, least), raised);
+  }
+  return passing / raised;
+}
+
 // Returns the share of paths that pass straight through instead of being scattered.
 LANCER_LANE F share_passing(const MaterialBlock &materials, int first, const Bsdf<F> &bsdf) {
   const F zero(0.0f), through = load(materials.through + first) + mean(bsdf.straight);
   const M passes = through > zero;
   if (!any(passes))
     return zero;
-  return select(passes, through / (through + select(some(materials.ends, first), zero, mean(bsdf.albedo()))), zero);
+  const M ends = some(materials.ends, first);
+  const F all = through + select(ends, zero, mean(bsdf.albedo()));
+  F share = through / all;
+  if (materials.even_choices != 0)
+    share = select(some(materials.even_choices, first) & !ends, even_share(bsdf, through, all), share);
+  return select(passes, share, zero);
 }
 
 LANCER_LANE F widest_alpha2(const Bsdf<F> &bsdf) {
