@@ -46,9 +46,10 @@ def _even_sky(scene):
     parts.set_world(scene, (0.7, 0.85, 1.0), 3.0)
 
 
+# Of the ellipse, the rim passes the corners of the window.
 _SHAPES = {
     "rectangle": {"shape": "RECTANGLE", "size": 1.2, "size_y": 1.6},
-    "ellipse": {"shape": "ELLIPSE", "size": 1.0, "size_y": 1.4},
+    "ellipse": {"shape": "ELLIPSE", "size": 1.7, "size_y": 2.27},
 }
 
 
@@ -61,10 +62,11 @@ def portal_of_a_room(scene, shine):
 
 @variants(values={"ellipse": "ellipse", "behind": "behind", "two": "two"}, bounces=1)
 def portal_variants(scene, which):
-    """An ellipse smaller than its window, a portal that faces outwards, and two that overlap."""
+    """An ellipse around its window, a portal that faces outwards beside one that faces inwards, and two that overlap."""
     _room(scene)
+    _portal(scene, (2, 0, 1.6), (0, 1.5708, 0), **_SHAPES["ellipse" if which == "ellipse" else "rectangle"])
     if which == "two":
         _portal(scene, (2, 0.3, 1.6), (0, 1.5708, 0), **_SHAPES["rectangle"])
-    turned = (0, -1.5708, 0) if which == "behind" else (0, 1.5708, 0)
-    _portal(scene, (2, 0, 1.6), turned, **_SHAPES["ellipse" if which == "ellipse" else "rectangle"])
+    elif which == "behind":
+        _portal(scene, (2, 0, 1.6), (0, -1.5708, 0), **_SHAPES["rectangle"])
     _uneven_sky(scene)
