@@ -1,5 +1,7 @@
 """Limits of light: bounces by kind and of lamps, clamped direct light, caustics, and blurred gloss."""
 
+import bpy
+
 from .. import parts
 from .catalogue import case, variants
 from .nodes import shader, world
@@ -62,12 +64,24 @@ def lamp_bounces(scene, limit):
     scene.objects["Lamp"].data.cycles.max_bounces = limit
 
 
-@case(bounces=3)
-def sky_bounces(scene):
+def _dim_sky(scene):
     """A sky that is sampled as a light, which an even one is not."""
-    room(scene, _matt())
     world(scene, lambda nodes: nodes.add("ShaderNodeBackground", Color=nodes.add("ShaderNodeTexGradient"), Strength=1.5))
     scene.world.cycles.max_bounces = 0
+
+
+@case(bounces=3, since=(4, 0), limited={"use_light_tree": True})
+def sky_bounces(scene):
+    """The light that is lost depends on the choice among lamps, which is that of Cycles' tree."""
+    room(scene, _matt())
+    _dim_sky(scene)
+
+
+@case(bounces=3)
+def sky_bounces_alone(scene):
+    room(scene, _matt())
+    bpy.data.objects.remove(scene.objects["Lamp"])
+    _dim_sky(scene)
 
 
 @variants(

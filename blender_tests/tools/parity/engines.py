@@ -95,13 +95,13 @@ def _set_cycles(cycles, case, samples, seed):
     cycles.max_bounces = case.bounces
     for kind in ("diffuse", "glossy", "transmission"):
         setattr(cycles, kind + "_bounces", case.bounces)
+    if hasattr(cycles, "use_light_tree"):
+        cycles.use_light_tree = False
     for name, value in case.limited.items():
         setattr(cycles, name, value)
     cycles.volume_bounces = 0
     cycles.transparent_max_bounces = case.transparent_bounces
     cycles.min_light_bounces = cycles.min_transparent_bounces = 0
-    if hasattr(cycles, "use_light_tree"):
-        cycles.use_light_tree = False
 
 
 def unbias_lancer(lancer, samples, seed):
