@@ -153,9 +153,9 @@ parity: packages-run python-run build ## compare with Cycles, scene by scene: ma
 	@$(if $(BLENDER),"$(BLENDER)" -b --factory-startup --python-exit-code 3 -P $(tools) --,$(python) $(tools)) parity.run \
 	  $(if $(ONLY),--only '$(ONLY)') $(if $(QUICK),--quick)
 
-differ: packages-run python-run build ## find what differs from Cycles without a message: make differ [SCENES=200] [SEED=1] [BLENDER=blender] [QUICK=1]
+differ: packages-run python-run build ## find what differs from Cycles without a message: make differ [SCENES=200] [SEED=1] [FEATURE=motion] [BLENDER=blender] [QUICK=1]
 	@$(python) $(tools) differ.run $(if $(SCENES),--scenes $(SCENES)) $(if $(SEED),--seed $(SEED)) \
-	  $(if $(BLENDER),--blender "$(BLENDER)") $(if $(QUICK),--quick)
+	  $(if $(BLENDER),--blender "$(BLENDER)") $(foreach feature,$(FEATURE),--feature $(feature)) $(if $(QUICK),--quick)
 
 corpus: packages-run $(if $(DENOISED),python-charts,python-run) build ## render public files by Lancer and by Cycles: make corpus [DIR=folder] [CLONES=folder] [ONLY='*'] [QUICK=1] [PX=320] [README=1] [DENOISED=1]
 	@$(python) $(tools) corpus.run $(if $(DIR),--folder "$(DIR)") $(if $(CLONES),--clones "$(CLONES)") \

@@ -21,9 +21,21 @@ def has_pass(view_layer):
     return getattr(getattr(view_layer, "cycles", None), "use_pass_shadow_catcher", False)
 
 
+def has_catchers(instances):
+    """Whether an InstanceTable has any."""
+    return bool(np.any(instances.flags & int(InstanceFlag.CATCHER)))
+
+
+def tell_of_aovs(instances, aovs, messages):
+    """Report that the AOVs of a layer are others than Cycles', whose two paths from a catcher both add to them."""
+    if aovs and has_catchers(instances):
+        text = "where the camera sees shadow catchers, AOVs count surfaces and sky once, in Cycles twice"
+        messages.add(text, "feature:AOVs at shadow catchers")
+
+
 def catchers_of(instances, view_layer, integrator):
     """Return Settings.catchers for the objects of an InstanceTable: with the pass, Combined leaves them out."""
     if has_pass(view_layer):
         return Catchers.APART
-    has_any = integrator == Integrator.PATH and np.any(instances.flags & int(InstanceFlag.CATCHER))
+    has_any = integrator == Integrator.PATH and has_catchers(instances)
     return Catchers.SHADOWS if has_any else Catchers.OBJECTS

@@ -168,7 +168,7 @@ def _from_nodes(material, graph, aovs):
     output = output_node(tree, "OUTPUT_MATERIAL") if tree is not None else None
     if output is None:
         messages.add(f"{who}: has no Material Output node that Cycles uses, black is used", severity=Severity.WRONG)
-        return {"lobes": ()}
+        return {"lobes": (), "outputs": read_outputs(graph, tree, aovs) if tree is not None else ()}
     site = Site(output)
     has_surface = graph.is_linked(site, ("Surface",))
     graph.has_volume = graph.is_linked(site, ("Volume",))
@@ -176,7 +176,7 @@ def _from_nodes(material, graph, aovs):
         shown = "its surface alone is shown" if has_surface else "nothing of it is shown"
         messages.add(f"{who}: volumes are not supported, {shown}", "feature:volume", severity=Severity.LEFT_OUT)
         if not has_surface:
-            return {"lobes": (), "transmittance": (1.0, 1.0, 1.0)}
+            return {"lobes": (), "transmittance": (1.0, 1.0, 1.0), "outputs": read_outputs(graph, tree, aovs)}
     values = _displacement(material, graph, site)
     surface = Surface(graph)
     surface.read(site, output.inputs["Surface"])

@@ -8,7 +8,7 @@ from ..bindings.session import Cancelled
 from ..bindings.snapshot import SceneSnapshot
 from ..messages.messages import Messages
 from .camera import export_camera
-from .catchers import catchers_of
+from .catchers import catchers_of, tell_of_aovs
 from .culling import Culling
 from .even_normals import with_even_normals
 from .flat import report_flat
@@ -128,6 +128,7 @@ def export_scene(depsgraph, options=None, poll=None):
         world=_grouped(exported.world, sky, group_numbers(view_layer, options.passes)),
         named_passes=named,
     )
+    tell_of_aovs(snapshot.instances, aovs, messages)
     obey()
     if options.shutter is not None:
         at_middle = snapshot.replaced(camera=camera)

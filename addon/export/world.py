@@ -86,9 +86,11 @@ def _nodes(world, graph, who, messages, aovs):
     if bpy.app.version < (5, 0) and not world.use_nodes:
         return messages.color(world.color, who, "colour"), ()
     tree = graph.tree_of(world)
-    output = output_node(tree, "OUTPUT_WORLD") if tree is not None else None
-    if output is None:
+    if tree is None:
         return (0.0, 0.0, 0.0), ()
+    output = output_node(tree, "OUTPUT_WORLD")
+    if output is None:
+        return (0.0, 0.0, 0.0), read_outputs(graph, tree, aovs)
     if output.inputs["Volume"].is_linked:
         text = f"{who}: volumes are not supported, its background alone is shown"
         messages.add(text, "feature:volume of the world", severity=Severity.LEFT_OUT)

@@ -80,6 +80,7 @@ class Case:
     size: tuple = (96, 64)
     filter_width: float = 0.0  # 0: the box of one pixel; else the width of a Blackman-Harris filter
     passes: tuple = ("Combined",)  # by the names of Blender 5
+    mattes: tuple = ()  # cryptomattes whose decoded mattes are compared, by the titles of their passes
     dark: tuple = ()  # the passes that must be black
     needs: object = None  # needs() returns "" or a sentence that names the missing requirement
     sum_of_passes: bool = False  # compare the sum of Lancer's passes with its Combined

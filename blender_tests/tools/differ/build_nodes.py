@@ -2,6 +2,7 @@
 
 import bpy
 
+from . import build_outputs
 from .record import is_link
 
 _TYPES = {
@@ -38,6 +39,8 @@ def build_node(tree, name, fields, find):
     except RuntimeError:
         return None
     node.name = name
+    if "aov" in fields:
+        build_outputs.name_aov(node, fields["aov"])
     if "zone" in fields:
         node.repeat_items.clear()
         node.repeat_items.new(_TYPES[fields["zone"]][1], "Item")

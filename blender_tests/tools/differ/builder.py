@@ -8,7 +8,7 @@ from mathutils import Matrix
 from scenes import parts
 from scenes.parity import subdivisions
 
-from . import build_images, build_meshes, build_motion, build_nodes, build_photometry
+from . import build_images, build_meshes, build_motion, build_nodes, build_outputs, build_photometry
 
 _MODIFIER_SHAPES = {"MESH"}
 
@@ -32,7 +32,8 @@ class Builder:
     # ---- data ----
 
     def _frame(self, name, fields):
-        pass
+        if "mattes" in fields:
+            build_outputs.ask_for_mattes(fields["mattes"], fields.get("matte_levels", 6))
 
     def _image(self, name, fields):
         self.things[name] = build_images.build_image(name, fields)
@@ -245,6 +246,18 @@ class Builder:
     def _film(self, name, fields):
         for setting, value in fields.items():
             setattr(self.scene.render if hasattr(self.scene.render, setting) else self.scene.cycles, setting, value)
+
+    def _light_group(self, name, fields):
+        self.things[name] = name
+        build_outputs.build_light_group(name)
+
+    def _member(self, name, fields):
+        owner, group = self.find(fields["owner"]), self.find(fields["group"])
+        if owner is not None and group is not None:
+            owner.lightgroup = group
+
+    def _aov(self, name, fields):
+        build_outputs.build_aov(name, fields)
 
     def _layer(self, name, fields):
         layer = bpy.context.view_layer

@@ -8,6 +8,7 @@ from . import (
     random_images,
     random_lights,
     random_motion,
+    random_outputs,
     random_photometry,
     random_properties,
 )
@@ -16,8 +17,12 @@ from .random_nodes import Trees
 from .random_things import Things
 from .record import Record
 
+# What is rare in scenes unless it is asked for.
+FEATURES = ("motion", "outputs")
 
-def describe(seed):
+
+def describe(seed, asked=()):
+    """asked: names of FEATURES that the scene has in any case."""
     dice = Dice(seed)
     images = [random_images.image(dice, number + 1) for number in range(dice.pick({0: 3, 1: 3, 2: 1}))]
     materials = [_material(dice, number + 1) for number in range(dice.pick({1: 4, 2: 3}))]
@@ -66,7 +71,8 @@ def describe(seed):
     if dice.chance(0.3):
         for record in images:
             record.fields["cached"] = True
-    everything += random_motion.motion(dice, everything)
+    everything += random_motion.motion(dice, everything, "motion" in asked)
+    everything += random_outputs.outputs(dice, everything, trees, "outputs" in asked)
     return [record for record in everything if record.fields or record.verb not in ("film", "layer")]
 
 

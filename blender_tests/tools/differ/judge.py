@@ -24,12 +24,21 @@ def make_case(records):
         passes = tuple(name for name in passes if not name.startswith("Denoising")) or ("Combined",)
     fields = {"passes": passes, "dark": (*passes, "Alpha"), "size": tuple(frame.get("size", (48, 32))), "samples": _SAMPLES}
     fields |= {name: frame[name] for name in ("bounces", "transparent_bounces", "filter_width") if name in frame}
+    fields["passes"] += tuple(name for record in records for name in _made_passes(record))
+    fields["mattes"] = tuple(frame.get("mattes", ()))
     kind = frame.get("kind", "LOBES")
     if kind == "DATA":
         fields |= {"kind_name": "PIXELS", "filter_width": 0.01, "samples": _SAMPLES // 2}
     else:
         fields["kind_name"] = kind
     return Case("scene", "differ", lambda scene: _build(scene, records), **fields)
+
+
+def _made_passes(record):
+    """The passes that a record makes."""
+    if record.verb == "light_group":
+        return (f"Combined_{record.name}",)
+    return (record.name,) if record.verb == "aov" else ()
 
 
 def _build(scene, records):

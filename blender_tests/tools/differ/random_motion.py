@@ -9,11 +9,12 @@ _SHARE, _SHARE_OF_VECTORS = 0.2, 0.9
 _DEFORMING = {"SIMPLE_DEFORM": ("factor", 0.4), "DISPLACE": ("strength", 0.15), "ARRAY": ("constant_offset_displace", 0.2)}
 
 
-def motion(dice, records):
+def motion(dice, records, is_asked=False):
     """Records of motion; none in most scenes, and where data of single samples are compared but vectors."""
     frame = next(record.fields for record in records if record.verb == "frame")
     of_vectors = "Vector" in frame["passes"]
-    if frame.get("kind") == "DATA" and not of_vectors or not dice.chance(_SHARE_OF_VECTORS if of_vectors else _SHARE):
+    share = 1.0 if is_asked else _SHARE_OF_VECTORS if of_vectors else _SHARE
+    if frame.get("kind") == "DATA" and not of_vectors or not dice.chance(share):
         return []
     moving = []
     for record in records:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from scenes.parity import figures
-from tools.parity import contest
+from tools.parity import contest, engines
 
 from . import data_passes
 
@@ -16,6 +16,8 @@ _MOST_ADDED = 2.0
 # The least level of vectors, in pixels, and what Cycles' single precision leaves of what stands still: places of a hundred
 # pixels have an error of some 1e-5, in which the matrices of objects may err ten times as much.
 _PIXEL, _STILL = 1.0, 2e-3
+# The least level of a matte, which is 1 where its object covers a pixel.
+_MATTE = 0.2
 # No distance in a scene is larger.
 _FAR = 1e9
 # Samples of a scene that noise may have taken beyond its limits, in those of a scene within them.
@@ -38,14 +40,16 @@ def run(case, folder, most_samples, first_seed, hasty):
 def _render(case, outcome, folder, most_samples, first_seed, hasty):
     scene = contest.open_empty()
     case.build(scene)
-    engines = [contest.Halves("LANCER"), contest.Halves("CYCLES")]
+    both = [contest.Halves("LANCER"), contest.Halves("CYCLES")]
     samples, seed = min(case.samples, most_samples), first_seed
     while True:
-        for halves in engines:
+        for halves in both:
             halves.add(scene, case, samples, seed, folder)
         outcome.samples += 2 * samples
-        outcome.seconds = {halves.engine: halves.seconds for halves in engines}
-        ours, theirs = (halves.pictures for halves in engines)
+        outcome.seconds = {halves.engine: halves.seconds for halves in both}
+        ours, theirs = (halves.pictures for halves in both)
+        _complete_mattes(case, ours, theirs)
+        _leave_out_invalid(ours, theirs)
         _refuse_unlike(case, ours, theirs)
         if not case.kind.averages:
             _judge_data(case, outcome, scene, ours, theirs)
@@ -55,6 +59,24 @@ def _render(case, outcome, folder, most_samples, first_seed, hasty):
             return
         # The next round doubles the samples.
         samples, seed = outcome.samples // 2, seed + 2
+
+
+def _complete_mattes(case, *pictures):
+    """What one engine's manifest does not name, its mattes do not show."""
+    names = {name for each in pictures for name in each if name.startswith(tuple(f"{title} of " for title in case.mattes))}
+    for each in pictures:
+        empty = np.zeros((*next(iter(each.values()))[0].shape[:2], 1))
+        each.update({name: (empty, empty) for name in names.difference(each)})
+
+
+def _leave_out_invalid(ours, theirs):
+    """Cycles writes any value that nodes give an AOV; Lancer writes 0 for what is not finite."""
+    for name, halves in theirs.items():
+        if name in engines.PASSES or name == "Alpha":
+            continue
+        invalid = np.logical_or(*(~np.isfinite(half) for half in halves))
+        if invalid.any() and name in ours:
+            theirs[name], ours[name] = (tuple(np.where(invalid, 0.0, half) for half in pair[name]) for pair in (theirs, ours))
 
 
 def _refuse_unlike(case, ours, theirs):
@@ -99,7 +121,7 @@ def _judge_light(case, outcome, ours, theirs):
     level = float(np.mean(np.abs(theirs["Combined"]))) if "Combined" in theirs else 0.0
     for name, pair in theirs.items():
         one, other = (ours[name], pair) if name != "Denoising Depth" else _near(ours[name], pair)
-        least = max(_DARK, 0.0 if name in ("Combined", "Alpha") else _LEAST_SHARE * level)
+        least = _least_level(case, name, level)
         numbers = figures.measure(one, other, case.kind)
         if numbers.level < least:
             numbers = figures.measure(one, other, case.kind, np.full((1, 1, 1), least))
@@ -108,6 +130,13 @@ def _judge_light(case, outcome, ours, theirs):
         outcome.parts[name] = numbers, figures.judge(numbers, case.limits)
     names = [verdict.name for _, verdict in outcome.parts.values()]
     outcome.verdict = next(name for name in figures.WORST_FIRST if name in names)
+
+
+def _least_level(case, name, level):
+    """Return the least level of a pass, where the level of Combined is given."""
+    if name.startswith(case.mattes):
+        return _MATTE
+    return max(_DARK, 0.0 if name in ("Combined", "Alpha") else _LEAST_SHARE * level)
 
 
 def _is_settled(case, outcome, most_samples, hasty):

@@ -27,6 +27,7 @@ def read_arguments():
     parser.add_argument(
         "--blender", default="", help="a Blender program, or a Python that has bpy, in place of this Python's module"
     )
+    parser.add_argument("--feature", action="append", default=[], choices=generator.FEATURES, help="in every scene")
     parser.add_argument("--keep-size", action="store_true", help="faults are not shrunk")
     return parser.parse_args()
 
@@ -48,7 +49,7 @@ def environment(folder):
 
 def examine(hunt, seed, arguments, say):
     """The verdict of a seed, as it is kept."""
-    scene = generator.describe(seed)
+    scene = generator.describe(seed, arguments.feature)
     answer = hunt.verdict(scene)
     if answer["verdict"] in FAULTS:
         scene = answer.pop("scene", scene)
@@ -70,6 +71,8 @@ def main():
     log.write_bytes(b"")
     sources = [*(ROOT / "addon").rglob("*.py"), *(ROOT / "blender_tests" / "tools" / "differ").glob("*.py")]
     key = {"library": digest_of_library(), "sources": digest_of_files(sources), "blender": arguments.blender}
+    if arguments.feature:
+        key["asked"] = sorted(arguments.feature)
     say, counts = Progress(), {}
     most_samples = 32 if arguments.quick else arguments.most_samples
     with Hunt(worker_command(arguments.blender), log, environment(arguments.output), most_samples) as hunt:

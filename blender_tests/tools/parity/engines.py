@@ -1,8 +1,10 @@
 """Let both engines estimate the same integral: equal bounces and filters, no clamping, adaptive sampling or denoising."""
 
+import json
 import os
 
 import bpy
+import decoded_mattes
 import exr
 
 from addon.engine import render_engine as lancer_engine
@@ -161,4 +163,13 @@ def render(scene, engine, case, samples, seed, folder):
             result["Alpha"] = picture[..., 3:4]
             picture = picture[..., :3]
         result[name] = picture
+    for title in case.mattes:
+        result |= _named_mattes(path, stored, title)
     return result
+
+
+def _named_mattes(path, stored, title):
+    """Return the mattes of a cryptomatte as pictures of one channel, by the names of its manifest."""
+    told = decoded_mattes.fields(exr.attributes(path), f"{bpy.context.view_layer.name}.{title}")
+    found = decoded_mattes.mattes(stored, title, json.loads(told["manifest"]))
+    return {f"{title} of {name}": matte[..., None] for name, matte in found.items()}
