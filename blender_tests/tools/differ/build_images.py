@@ -35,7 +35,8 @@ def _pixels(fields, number=0):
         pixels[..., 3] = source.uniform(0.0, 1.0, (height, width))
     elif fields.get("alpha", "none") == "cut":
         pixels[..., 3] = source.uniform(0.0, 1.0, (height, width)) < 0.5
-    return pixels.repeat(_ENLARGED, 0).repeat(_ENLARGED, 1) if is_cached(fields) else pixels
+    times = _ENLARGED if is_cached(fields) else fields.get("enlarged", 1)
+    return pixels.repeat(times, 0).repeat(times, 1)
 
 
 def build_image(name, fields):

@@ -8,7 +8,16 @@ from mathutils import Matrix
 from scenes import parts
 from scenes.parity import subdivisions
 
-from . import build_images, build_meshes, build_motion, build_nodes, build_outputs, build_photometry
+from . import (
+    build_images,
+    build_limits,
+    build_links,
+    build_meshes,
+    build_motion,
+    build_nodes,
+    build_outputs,
+    build_photometry,
+)
 
 _MODIFIER_SHAPES = {"MESH"}
 
@@ -68,6 +77,8 @@ class Builder:
         world.cycles.sampling_method, world.cycles.sample_map_resolution = "MANUAL", fields.get("map_resolution", 64)
         for ray in fields.get("hidden_from", ()):
             setattr(world.cycles_visibility, ray, False)
+        if "max_bounces" in fields:
+            world.cycles.max_bounces = fields["max_bounces"]
         for setting, value in fields.get("mist", {}).items():
             setattr(world.mist_settings, setting, value)
         if "occlusion_distance" in fields:
@@ -137,6 +148,8 @@ class Builder:
                 lamp.use_shadow = False
             else:
                 lamp.cycles.cast_shadow = False
+        if "max_bounces" in fields:
+            lamp.cycles.max_bounces = fields["max_bounces"]
         if fields.get("portal"):
             lamp.cycles.is_portal = True
         if fields.get("nodes"):
@@ -246,6 +259,18 @@ class Builder:
     def _film(self, name, fields):
         for setting, value in fields.items():
             setattr(self.scene.render if hasattr(self.scene.render, setting) else self.scene.cycles, setting, value)
+
+    def _linking(self, name, fields):
+        build_links.build_linking(name, fields, self.find)
+
+    def _fast_gi(self, name, fields):
+        build_limits.build_fast_gi(self.scene, fields, self.find)
+
+    def _culling(self, name, fields):
+        build_limits.build_culling(self.scene, fields, self.find)
+
+    def _texels(self, name, fields):
+        build_limits.build_texels(self.scene, fields)
 
     def _light_group(self, name, fields):
         self.things[name] = name

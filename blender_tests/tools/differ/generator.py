@@ -7,6 +7,8 @@ from . import (
     random_frames,
     random_images,
     random_lights,
+    random_limits,
+    random_links,
     random_motion,
     random_outputs,
     random_photometry,
@@ -18,7 +20,7 @@ from .random_things import Things
 from .record import Record
 
 # What is rare in scenes unless it is asked for.
-FEATURES = ("motion", "outputs")
+FEATURES = ("motion", "outputs", "links", "limits")
 
 
 def describe(seed, asked=()):
@@ -73,6 +75,8 @@ def describe(seed, asked=()):
             record.fields["cached"] = True
     everything += random_motion.motion(dice, everything, "motion" in asked)
     everything += random_outputs.outputs(dice, everything, trees, "outputs" in asked)
+    everything += random_links.links(dice, everything, "links" in asked)
+    everything += random_limits.limits(dice, everything, "limits" in asked)
     return [record for record in everything if record.fields or record.verb not in ("film", "layer")]
 
 

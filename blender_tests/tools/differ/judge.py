@@ -25,6 +25,9 @@ def make_case(records):
     fields = {"passes": passes, "dark": (*passes, "Alpha"), "size": tuple(frame.get("size", (48, 32))), "samples": _SAMPLES}
     fields |= {name: frame[name] for name in ("bounces", "transparent_bounces", "filter_width") if name in frame}
     fields["passes"] += tuple(name for record in records for name in _made_passes(record))
+    verbs = {record.verb for record in records}
+    fields["limited"] = {**frame.get("limited", {}), **({"use_fast_gi": True} if "fast_gi" in verbs else {})}
+    fields["simplify"] = not verbs.isdisjoint(("culling", "texels"))
     fields["mattes"] = tuple(frame.get("mattes", ()))
     kind = frame.get("kind", "LOBES")
     if kind == "DATA":
