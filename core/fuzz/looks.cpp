@@ -20,6 +20,27 @@ void replay(lancer_session session, const SessionState *state, Bytes &bytes) {
   LANCER_CHECKED(lancer_debug_sample(session, x, y, sample, rgba, vertices, capacity, &count));
 }
 
+bool asks_for_numbered(const lancer_settings &settings) {
+  return (settings.mattes | settings.light_groups | settings.aov_colors | settings.aov_values | settings.catchers) != 0;
+}
+
+void read_numbered(lancer_session session, size_t pixels) {
+  std::vector<float> picture;
+  for (uint32_t kind = LANCER_PASS_KIND_OBJECT_MATTES; kind <= LANCER_PASS_KIND_CATCHER_MATTE + 1; ++kind)
+    for (const uint32_t number : {0u, 1u, 1023u})
+      for (const size_t channels : {1, 3, 4}) {
+        picture.assign(pixels * channels, NAN);
+        const uint32_t pass = kind * LANCER_PASS_SPAN + number;
+        // The bits of an id may be any float's.
+        if (LANCER_CHECKED(lancer_session_read(session, pass, picture.data(), picture.size())) != LANCER_OK ||
+            kind <= LANCER_PASS_KIND_ASSET_MATTES)
+          continue;
+        for (const float value : picture)
+          if (!std::isfinite(value))
+            broken("lancer_session_read", ("pass " + std::to_string(pass) + " is not finite").c_str());
+      }
+}
+
 } // namespace
 
 void wait_for_end(lancer_session session) {
@@ -78,6 +99,8 @@ void look(lancer_session session, const SessionState *state, Bytes &bytes) {
         if (std::isnan(value) || (std::isinf(value) && pass != LANCER_PASS_ERROR))
           broken("lancer_session_read", ("pass " + std::to_string(pass) + " is not finite").c_str());
     }
+  if (state && asks_for_numbered(state->settings))
+    read_numbered(session, pixels);
   replay(session, state, bytes);
   probe_camera(session, bytes);
 }

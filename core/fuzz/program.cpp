@@ -1,7 +1,9 @@
 #include "program.h"
 
+#include "bakes.h"
 #include "checked.h"
 #include "looks.h"
+#include "movements.h"
 #include "objects.h"
 #include "parts.h"
 #include "probes.h"
@@ -20,6 +22,8 @@ namespace {
 constexpr uint8_t kFirstOfParts = 240, kLastOfParts = 245;
 // The bytes that select calls of objects and edits, which old files hardly have either.
 constexpr uint8_t kObject = 246, kEdit = 247, kChange = 248;
+// The bytes that select calls for compositing, motion and bakes.
+constexpr uint8_t kWiden = 249, kMove = 250, kBake = 251;
 
 constexpr uint32_t kMostCalls = 40, kMostScenes = 2, kMostSessions = 3, kMostRanges = 5, kMostRefinements = 4, kMostThings = 16;
 
@@ -55,6 +59,12 @@ private:
       return objects_.edit(handle_of(scenes_), kMostScenes);
     if (b == kChange)
       return objects_.change(handle_of(scenes_));
+    if (b == kWiden)
+      return records_.widen();
+    if (b == kMove)
+      return move();
+    if (b == kBake)
+      return bake();
     switch (b % 24) {
     case 0:
       return create_scene();
@@ -202,6 +212,22 @@ private:
     const lancer_scene scene = open(filled);
     const lancer_world world = records_.world(*filled);
     LANCER_CHECKED(lancer_scene_set_world(scene, &world));
+  }
+
+  void move() {
+    Filled *filled = nullptr;
+    const lancer_scene scene = open(filled);
+    lancer_fuzz::move(scene, filled, records_, bytes_);
+  }
+
+  void bake() {
+    if (sessions_.size() >= kMostSessions || !make_ready())
+      return;
+    const lancer_scene scene = handle_of(scenes_);
+    const SceneState *state = state_of(scenes_, scene);
+    const SessionState session = lancer_fuzz::bake(scene, state ? &state->filled : nullptr, records_, bytes_);
+    if (session.handle != 0)
+      sessions_.push_back(session);
   }
 
   void commit(lancer_scene scene) {

@@ -96,6 +96,7 @@ lancer_mesh Records::mesh() {
     mesh.triangles = nullptr;
   if (bytes_.rarely(2))
     mesh.attributes = nullptr;
+  widen(mesh);
   return mesh;
 }
 
@@ -182,6 +183,7 @@ lancer_light Records::light(const Filled &filled) {
   light.falloff_radius = bytes_.number(10.0f, 0.0f, 20.0f);
   light.node_count = nodes(filled, light.nodes);
   light.strength = parameter(1.0f, -1.0f, 2.0f);
+  widen(light);
   node_count_ = 0;
   return light;
 }
@@ -194,6 +196,8 @@ lancer_world Records::world(const Filled &filled) {
   world.use_ambient = world.radiance.node < 0 && world.hidden_from & 1u;
   for (int i = 0; i < 3; ++i)
     world.ambient[i] = world.radiance.value[i];
+  world.output_count = outputs(world.outputs);
+  world.light_group = wide_ ? group() : 0;
   // A map of width 0, or of a large width, would take long if the radiance varies.
   world.map_resolution = bytes_.rarely(2) ? 65537 + bytes_.byte() : 1 + bytes_.below(32);
   node_count_ = 0;
@@ -223,6 +227,7 @@ Records::Instances Records::instances(const Filled &filled) {
     row.hidden_from = hidden_from();
     row.flags = flag(20);
     row.terminator = bytes_.number(0.0f, 0.0f, 1.0f);
+    widen(row);
   }
   out.names = bytes_.rarely(4) ? "no end" : "one\0two";
   out.names_size = bytes_.rarely(4) ? 6 : 8;
@@ -267,6 +272,7 @@ lancer_camera Records::camera() {
   camera.aperture_blades = bytes_.rarely(30) ? bytes_.choice(9) : 0u;
   camera.aperture_rotation = bytes_.number(0.0, -7.0, 7.0);
   camera.aperture_ratio = bytes_.number(1.0, 0.1, 3.0);
+  widen(camera);
   return camera;
 }
 
@@ -309,6 +315,7 @@ lancer_settings Records::settings() {
   settings.threads = bytes_.rarely(2) ? 1025 : 1 + bytes_.below(2);
   settings.tile_size = bytes_.rarely(60) ? bytes_.choice(9) : 0u;
   settings.refines = bytes_.rarely(80) ? 1u : 0u;
+  widen(settings);
   return settings;
 }
 

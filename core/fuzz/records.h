@@ -36,6 +36,11 @@ public:
 
   const char *name();
   void matrix(double rows[12], double away = 0.0);
+  // Returns a number of keys of motion.
+  uint32_t key_count();
+  // Lets later records have members for compositing and motion; those before read no bytes for them, so that old files keep
+  // their meaning.
+  void widen() { wide_ = true; }
 
 private:
   lancer_parameter parameter(float usual, float low = 0.0f, float high = 1.0f);
@@ -45,6 +50,15 @@ private:
   lancer_principled principled();
   lancer_node node(const Filled &filled, uint32_t at);
   uint32_t nodes(const Filled &filled, const lancer_node *&out);
+  uint32_t outputs(const lancer_output *&out);
+  uint32_t matte();
+  uint32_t group();
+  uint64_t sets();
+  void widen(lancer_mesh &mesh);
+  void widen(lancer_instance &row);
+  void widen(lancer_light &light);
+  void widen(lancer_camera &camera);
+  void widen(lancer_settings &settings);
   float *floats(size_t count, float low, float high);
   void make_blocks(lancer_image &image);
   void make_wide(lancer_image &image);
@@ -58,6 +72,7 @@ private:
   }
 
   Bytes &bytes_;
+  bool wide_ = false;
   uint32_t node_count_ = 0; // of the owner being made
   std::vector<std::shared_ptr<void>> kept_;
 };

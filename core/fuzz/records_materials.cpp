@@ -181,6 +181,8 @@ lancer_material Records::material(const Filled &filled) {
   material.ambient = parameter(0.0f);
   material.displacement = vector();
   material.normal = vector();
+  material.output_count = outputs(material.outputs);
+  material.matte = wide_ ? matte() : 0;
   // A portal is described by parts of the material, so that the corpus keeps its meaning.
   if (material.material_index % 8 == 7) {
     lancer_portal portal = {};
