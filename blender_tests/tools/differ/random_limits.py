@@ -44,7 +44,9 @@ def limits(dice, records, is_asked=False):
 
 
 def _things(records):
-    return [record.name for record in records if record.verb == "object" and record.name.startswith(("Thing", "Ground", "Copy"))]
+    return [
+        record.name for record in records if record.verb == "object" and record.name.startswith(("Thing", "Ground", "Copy"))
+    ]
 
 
 def _fast_gi(dice, records):
