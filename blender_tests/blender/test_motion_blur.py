@@ -58,6 +58,17 @@ def test_instances_are_known_by_their_numbers(which, tmp_path):
         assert all(x == 0.0 and y == 0.0 and 0.0 <= z <= 1 / 48 + 1e-3 for x, y, z in way), way
 
 
+@both
+def test_shutters_of_no_time_and_of_a_million_frames(which, tmp_path):
+    got = blenders.run(which, tmp_path, "motion_cases", "shutters")
+    assert got["closed"] and not got["blurred"]
+    # The glowing cube stands at one end of its way before its keys and at the other after them: in sight, at equal distances
+    # that are at most 1.02 times that in the middle.
+    assert got["finite"] and got["frame"] == [2, 0.0]
+    sharp, without = got["ends"]
+    assert without == 0.0 and 0.5 * sharp < got["long"] < 2.0 * sharp
+
+
 def test_times_are_those_of_cycles(tmp_path):
     got = blenders.run(MODULE, tmp_path, "motion_cases", "curve")
     # Entries of 256 stand for u = (i + 1/2) / 256, of which the sums have 255 steps: times u 255 / 256.

@@ -5,6 +5,7 @@ import os
 import tempfile
 
 import bpy
+import exr
 import numpy as np
 import stage
 
@@ -194,6 +195,35 @@ def instances():
         for matrices in motions.matrices
     ]
     return {"ways": ways, "count": len(watch.snapshots[0].instances)}
+
+
+def shutters():
+    """Return whether a shutter open for no time gives the bits of the sharp picture, and what one of a million frames gives."""
+    scene, thing = _room()
+
+    def picture():
+        path = os.path.join(tempfile.mkdtemp(), "picture.exr")
+        exr.write_settings(scene, path)
+        bpy.ops.render.render(write_still=True)
+        return exr.read(path)["Combined"]
+
+    blurred = picture()
+    scene.render.motion_blur_shutter = 0.0
+    closed = picture()
+    scene.render.motion_blur_shutter = 1e6
+    long = picture()
+    frame = _frame(scene)
+    scene.render.use_motion_blur = False
+    sharp = picture()
+    thing.hide_render = True
+    return {
+        "closed": closed.tobytes() == sharp.tobytes(),
+        "blurred": blurred.tobytes() == sharp.tobytes(),
+        "finite": bool(np.isfinite(long).all()),
+        "long": float(long[..., :3].mean()),
+        "ends": [float(sharp[..., :3].mean()), float(picture()[..., :3].mean())],
+        "frame": frame,
+    }
 
 
 def curve():
