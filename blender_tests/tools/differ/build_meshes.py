@@ -82,7 +82,7 @@ def build_mesh(name, fields, find):
     for layer in list(mesh.uv_layers):
         mesh.uv_layers.remove(layer)
     for number, uv_map in enumerate(fields.get("uv_maps", [])):
-        _add_uvs(mesh, uv_map, number)
+        add_uvs(mesh, uv_map, number)
     if fields.get("active_uv_map", "") in mesh.uv_layers:
         mesh.uv_layers[fields["active_uv_map"]].active_render = True
     if "sharp_edges" in fields:
@@ -96,7 +96,7 @@ def build_mesh(name, fields, find):
     return mesh
 
 
-def _add_uvs(mesh, name, number):
+def add_uvs(mesh, name, number):
     """A map along two axes and, as no place is like another, bent."""
     layer = mesh.uv_layers.new(name=name)
     corners = np.zeros(len(mesh.loops), np.int32)

@@ -9,6 +9,7 @@ from scenes import parts
 from scenes.parity import subdivisions
 
 from . import (
+    build_bakes,
     build_images,
     build_limits,
     build_links,
@@ -27,7 +28,7 @@ class Builder:
         self.scene = scene
         self.things = {}  # by the record's name
         self.trees = {}
-        self._outside = set()
+        self.bake = None  # in place of a picture
 
     def find(self, name):
         return None if name is None else self.things.get(name.removeprefix("@"))
@@ -260,6 +261,11 @@ class Builder:
         for setting, value in fields.items():
             setattr(self.scene.render if hasattr(self.scene.render, setting) else self.scene.cycles, setting, value)
 
+    def _bake(self, name, fields):
+        thing = self.find(fields.get("object"))
+        if thing is not None and thing.type == "MESH":
+            self.bake = build_bakes.Bake(self.scene, fields, thing)
+
     def _linking(self, name, fields):
         build_links.build_linking(name, fields, self.find)
 
@@ -314,4 +320,7 @@ def _set_any(owners, name, value):
 
 
 def build(scene, records):
-    Builder(scene).build(records)
+    """Return the bake that the records ask for, or None."""
+    builder = Builder(scene)
+    builder.build(records)
+    return builder.bake

@@ -2,6 +2,7 @@
 
 from . import (
     closure_kinds,
+    random_bakes,
     random_emitters,
     random_exact,
     random_frames,
@@ -20,7 +21,7 @@ from .random_things import Things
 from .record import Record
 
 # What is rare in scenes unless it is asked for.
-FEATURES = ("motion", "outputs", "links", "limits")
+FEATURES = ("motion", "outputs", "links", "limits", "bakes")
 
 
 def describe(seed, asked=()):
@@ -77,6 +78,7 @@ def describe(seed, asked=()):
     everything += random_outputs.outputs(dice, everything, trees, "outputs" in asked)
     everything += random_links.links(dice, everything, "links" in asked)
     everything += random_limits.limits(dice, everything, "limits" in asked)
+    everything += random_bakes.bakes(dice, everything, "bakes" in asked)
     return [record for record in everything if record.fields or record.verb not in ("film", "layer")]
 
 

@@ -29,6 +29,8 @@ def make_case(records):
     fields["limited"] = {**frame.get("limited", {}), **({"use_fast_gi": True} if "fast_gi" in verbs else {})}
     fields["simplify"] = not verbs.isdisjoint(("culling", "texels"))
     fields["mattes"] = tuple(frame.get("mattes", ()))
+    if "bake" in verbs:
+        fields |= {"passes": ("Combined",), "mattes": ()}
     kind = frame.get("kind", "LOBES")
     if kind == "DATA":
         fields |= {"kind_name": "PIXELS", "filter_width": 0.01, "samples": _SAMPLES // 2}
@@ -49,7 +51,7 @@ def _build(scene, records):
     scene.lancer.use_check = False
     # Small pictures, and several workers beside one another.
     scene.render.threads_mode, scene.render.threads = "FIXED", 1
-    build(scene, records)
+    return build(scene, records)
 
 
 def judge(records, folder, most_samples, first_seed=1, hasty=True):

@@ -38,10 +38,11 @@ class Outcome:
 
 
 class Halves:
-    """The two halves of one engine's pictures, each the mean of its renders."""
+    """The two halves of one engine's pictures, each the mean of its renders. render: as engines.render."""
 
-    def __init__(self, engine):
+    def __init__(self, engine, render=engines.render):
         self.engine = engine
+        self._render = render
         self.seconds = 0.0
         self._sums = ({}, {})
         self._samples = 0
@@ -49,7 +50,7 @@ class Halves:
     def add(self, scene, case, samples, seed, folder):
         started = time.perf_counter()
         for half in (0, 1):
-            pictures = engines.render(scene, self.engine, case, samples, seed + half, folder)
+            pictures = self._render(scene, self.engine, case, samples, seed + half, folder)
             for name, picture in pictures.items():
                 sums = self._sums[half]
                 sums[name] = sums.get(name, 0.0) + samples * picture.astype(np.float64)
