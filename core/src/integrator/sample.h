@@ -167,9 +167,9 @@ struct Energy {
   // The sums in the order of lancer.h.
   static constexpr uint32_t kSums = 10;
   template <class Of> static std::array<decltype(&std::declval<Of &>().clipped), kSums> sums(Of &energy) {
-    return {&energy.clipped,      &energy.clipped_direct,   &energy.cut,         &energy.no_caustics,
-            &energy.last,         &energy.before_last,      &energy.filtered.sum, &energy.filtered.squares,
-            &energy.guessed.sum,  &energy.guessed.squares};
+    return {&energy.clipped,     &energy.clipped_direct, &energy.cut,          &energy.no_caustics,
+            &energy.last,        &energy.before_last,    &energy.filtered.sum, &energy.filtered.squares,
+            &energy.guessed.sum, &energy.guessed.squares};
   }
 
   // Returns an estimate of the light of all bounces beyond the last: the sum of a geometric series with the ratio of the last

@@ -166,7 +166,8 @@ Environment::Environment(const WorldView &world, const Normalisation &normalisat
 
 void Environment::make_even_map() {
   constexpr uint32_t kWidth = 4, kHeight = 2;
-  maps_ = std::make_shared<const Maps>(DirectionMap(kWidth, kHeight, std::vector<float>(kWidth * kHeight, 1.0f)), DirectionMap());
+  maps_ =
+      std::make_shared<const Maps>(DirectionMap(kWidth, kHeight, std::vector<float>(kWidth * kHeight, 1.0f)), DirectionMap());
 }
 
 glm::vec3 Environment::evaluate(const ProgramView &program, const glm::dvec3 &wi, std::span<glm::vec4> values,

@@ -28,8 +28,9 @@ public:
   PathIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
       : scene_(scene), settings_(settings), spread_at_eye_(camera), width_at_eye_(PixelCone(camera).base),
         camera_(camera, scene.motion, settings), film_(scene, camera, settings), hit_(scene, camera), met_(scene, camera),
-        haunted_(changes_paths(settings)), guesses_(settings.fast_bounces > 0), catches_(settings.catchers && (scene.features & kFeatureCatchers)), queues_(scene),
-        textures_(scene), surface_(scene, camera, settings), light_(scene, &camera), occlusion_(scene, settings),
+        haunted_(changes_paths(settings)), guesses_(settings.fast_bounces > 0),
+        catches_(settings.catchers && (scene.features & kFeatureCatchers)), queues_(scene), textures_(scene),
+        surface_(scene, camera, settings), light_(scene, &camera), occlusion_(scene, settings),
         ambient_(scene, settings.fast_distance), shadow_(scene, camera, settings), last_bounces_(settings.max_bounces) {
     if (std::ranges::any_of(scene.materials, [](const MaterialView &material) { return material.program.looks_around; }))
       surface_.look_by(node_rays_.emplace(scene).functions());
@@ -128,11 +129,11 @@ private:
   PathFilm film_;
   HitStage hit_;
   MetLights met_;
-  std::optional<LinkedLights> linked_; // if some light passes blockers
-  const bool haunted_;                 // limits of kinds of bounces or caustics, or a filter, change paths
-  const bool guesses_;                 // Fast GI ends paths
+  std::optional<LinkedLights> linked_;   // if some light passes blockers
+  const bool haunted_;                   // limits of kinds of bounces or caustics, or a filter, change paths
+  const bool guesses_;                   // Fast GI ends paths
   std::vector<bool> filtered_materials_; // a filter may change their lobes; empty without one
-  const bool catches_;                 // paths may meet shadow catchers
+  const bool catches_;                   // paths may meet shadow catchers
   ShadingQueues queues_;
   TexturePrefetch textures_;
   std::optional<SceneNodeRays> node_rays_; // if a node looks around

@@ -77,8 +77,8 @@ void sample_lamp(const Light &lamp, const Doubles (&p)[3], const VertexNumbers &
 
 [[gnu::flatten]] void sample_sky_through(const DirectionTable &map, const Openings &openings, SkyBlock &block) {
   for (int first = 0; first < kBlockLanes; first += kLanes) {
-    const DirectionSample<F> sample = sample_through<F>(map, openings, load3(block.p, first), load(block.u[0] + first),
-                                                        load(block.u[1] + first));
+    const DirectionSample<F> sample =
+        sample_through<F>(map, openings, load3(block.p, first), load(block.u[0] + first), load(block.u[1] + first));
     store3(block.wi, first, sample.direction);
     store(block.pdf + first, sample.pdf);
   }

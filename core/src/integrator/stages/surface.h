@@ -56,9 +56,9 @@ struct alignas(64) MaterialBlock {
   uint32_t no_caustics = 0, only_caustics = 0;
   Floats least_alpha;
   uint32_t even_choices = 0; // bits of lanes: each way on has a least share of the choices; by even_choices()
-  uint32_t lacks = 0;   // bits of components whose lobes are absent; by lack()
-  bool shares = false;  // diffuse and glossy shares of light are wanted
-  bool spreads = false; // the spread of rays is wanted, for images with mipmaps
+  uint32_t lacks = 0;        // bits of components whose lobes are absent; by lack()
+  bool shares = false;       // diffuse and glossy shares of light are wanted
+  bool spreads = false;      // the spread of rays is wanted, for images with mipmaps
 };
 
 // The lobes, with normals and emission on the viewer's side; by build_lobes().
