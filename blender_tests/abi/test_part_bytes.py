@@ -98,9 +98,9 @@ def test_sums_follow_from_single_samples():
         single = [ReadPart(rendered(worker, all_of(worker, number, 1))) for number in range(4)]
         whole = ReadPart(rendered(worker, all_of(worker, 0, 4)))
     assert whole.rays == tuple(np.sum([one.rays for one in single], axis=0))
-    assert whole.light == [sum(one.light[i] for one in single) for i in range(6)]
-    # The room has no caustics.
-    assert [light > 0 for light in whole.light] == [True, True, True, False, True, True]
+    assert whole.light == [sum(one.light[i] for one in single) for i in range(10)]
+    # The room has no caustics, and neither Filter Glossy nor Fast GI.
+    assert [light > 0 for light in whole.light] == [True, True, True, False, True, True, False, False, False, False]
     # The luminance of BT.709, with coefficients of 32 bits.
     weights = np.float32([0.2126, 0.7152, 0.0722]).astype(np.float64)
     assert whole.matte_kinds == 3 and whole.extra == 3 * 4 + 4 + 1

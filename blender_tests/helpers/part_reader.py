@@ -91,16 +91,16 @@ class Tile:
 
 
 class ReadPart:
-    """about: lancer_part as a record; rays: camera, bounce and shadow rays, and vertices; light: six exact sums as integers
+    """about: lancer_part as a record; rays: camera, bounce and shadow rays, and vertices; light: ten exact sums as integers
     in units of 2^-150; tiles: by number."""
 
     def __init__(self, data):
         self._data, self._at = bytes(data), 0
         mark, form, interface, size = self._take("<8sIIQ")
-        assert (mark, form, interface, size) == (b"LANCERPT", 1, abi.ABI_VERSION, len(self._data))
+        assert (mark, form, interface, size) == (b"LANCERPT", 2, abi.ABI_VERSION, len(self._data))
         (self.about,) = self._array(by_hand(abi.Part), 1)
         self.rays = self._take("<4Q")
-        self.light = [sum(digit << 8 * place for place, digit in enumerate(self._take("<32q"))) for _ in range(6)]
+        self.light = [sum(digit << 8 * place for place, digit in enumerate(self._take("<32q"))) for _ in range(10)]
         self.summed, self.of_first, self.halves = self._passes()
         groups, colors, values, bits = (
             int(self.about["settings"][name]) for name in ("light_groups", "aov_colors", "aov_values", "mattes")

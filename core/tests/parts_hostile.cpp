@@ -133,12 +133,12 @@ TEST(PartsWithHostileTotals, AreRefused) {
   const std::string words = "its sums of rays or light are no numbers";
   for (const int64_t last :
        {std::numeric_limits<int64_t>::min(), std::numeric_limits<int64_t>::max(), kMostDigit + 1, -kMostDigit - 1})
-    for (uint32_t sum = 0; sum < 6; ++sum)
+    for (uint32_t sum = 0; sum < 10; ++sum)
       expect_refused([=](Made &made) { made.digits[sum][31] = last; }, words);
   for (const int64_t digit : {int64_t(-1), int64_t(256)})
     expect_refused([=](Made &made) { made.digits[2][30] = digit; }, words);
-  // Clamping and limits remove absolute values.
-  for (uint32_t sum = 0; sum < 4; ++sum)
+  // Clamping and limits remove absolute values; the others are sums of squares.
+  for (const uint32_t sum : {0, 1, 2, 3, 7, 9})
     expect_refused([=](Made &made) { made.digits[sum][31] = -1; }, words);
   for (uint32_t count = 0; count < 4; ++count)
     expect_refused([=](Made &made) { made.counts[count] = ~uint64_t(0); }, words);

@@ -5,6 +5,7 @@
 #include "parts_lab.h"
 
 #include "render/checksum.h"
+#include "render/part_format.h"
 #include "render/parts.h"
 
 #include <algorithm>
@@ -46,7 +47,7 @@ struct MadeTile {
 struct Made {
   lancer_part description{};
   uint64_t counts[4] = {30, 20, 10, 40};
-  int64_t digits[6][32] = {};
+  int64_t digits[10][32] = {};
   std::vector<MadeTile> tiles;
 
   explicit Made(std::vector<MadeTile> of = {MadeTile()}) : tiles(std::move(of)) {
@@ -56,7 +57,7 @@ struct Made {
     description.settings = made_settings();
     description.split_lights = description.settings.split_lights;
     description.split_paths = description.settings.split_paths;
-    description.tiles = uint32_t(tiles.size());
+    description.tiles = tiles.size();
     description.first = tiles.empty() ? 0 : ~0u;
     for (MadeTile &tile : tiles) {
       tile.tell();
@@ -85,7 +86,7 @@ struct Made {
     told.hash = identity.hash();
     for (const char letter : {'L', 'A', 'N', 'C', 'E', 'R', 'P', 'T'})
       put(letter);
-    put(uint32_t(1));
+    put(lancer::kPartFormat);
     put(uint32_t(LANCER_ABI_VERSION));
     put(uint64_t(0));
     put(told);

@@ -242,10 +242,11 @@ Totals read_totals(Reader &reader) {
     are_digits &= std::all_of(digits.begin(), digits.end() - 1, [](int64_t digit) { return digit >= 0 && digit < 256; });
     *sum = ExactSum(digits);
   }
-  // Removed light is counted by absolute values.
+  // Removed light is counted by absolute values, and changed light also by its squares.
   const Energy &energy = totals.energy;
   const bool below_zero =
-      std::ranges::any_of(std::array{&energy.clipped, &energy.clipped_direct, &energy.cut, &energy.no_caustics},
+      std::ranges::any_of(std::array{&energy.clipped, &energy.clipped_direct, &energy.cut, &energy.no_caustics,
+                                     &energy.filtered.squares, &energy.guessed.squares},
                           [](const ExactSum *sum) { return sum->digits().back() < 0; });
   if (!are_digits || !are_numbers(totals) || below_zero)
     refuse_damaged("its sums of rays or light are no numbers");
