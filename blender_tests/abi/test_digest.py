@@ -24,7 +24,7 @@ def test_equal_scenes_have_equal_digests():
     assert digest == scene_digest(rich()) == scene_digest(loaded(rich())) == scene_digest(loaded(loaded(rich())))
 
 
-def test_any_change_of_the_scene_changes_it_and_none_of_camera_and_settings():
+def test_any_change_of_the_scene_changes_it_and_none_of_the_picture():
     snapshot, kept, refused = rich(), set(), set()
     names = [field.name for field in dataclasses.fields(snapshot)]
     # Digest the changed part of the scene alone, which is quicker.
@@ -38,9 +38,9 @@ def test_any_change_of_the_scene_changes_it_and_none_of_camera_and_settings():
         except ValueError:
             refused.add(path)
     assert len(paths) > 200 and {path[0] for path in paths} == set(names)
-    # A mesh has no attribute of another domain, and no pass has a number beyond the last.
-    assert {path[-1] for path in refused if path[0] != "settings"} == {"domain"}
-    assert kept == {path for path in paths if path[0] in ("camera", "settings")} - refused
+    # A mesh has no attribute of another domain, no pass has a number beyond the last, and each has as many channels as its kind.
+    assert {path[-1] for path in refused if path[0] != "settings"} == {"domain", "channels", "kind"}
+    assert kept == {path for path in paths if path[0] in ("camera", "settings", "named_passes")} - refused
 
 
 def test_no_digest_is_by_chance_that_of_another_scene():

@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 from tiny_scenes import quad, showroom
 
-from addon.bindings.enums import Domain, LobeKind, NodeKind
+from addon.bindings.enums import Domain, LobeKind, NodeKind, PassKind
 from addon.bindings.snapshot import (
     Image,
     InstanceMotion,
@@ -14,6 +14,7 @@ from addon.bindings.snapshot import (
     MeshAttribute,
     MeshData,
     Motion,
+    NamedPass,
     Node,
     NodeRef,
     ObjectAttribute,
@@ -68,6 +69,7 @@ def rich():
         images=pictures,
         materials=(*room.materials, paint),
         world=World(radiance=NodeRef(1), nodes=(Node(), dataclasses.replace(seen, kind=NodeKind.ENVIRONMENT))),
+        named_passes=(NamedPass("Combined_key", "RGB", PassKind.LIGHT_GROUP),),
     )
 
 

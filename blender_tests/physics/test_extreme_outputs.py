@@ -8,11 +8,11 @@ import pytest
 from tiny_scenes import lambert, move, pencil, plane, quad, render, scene
 
 from addon.bindings.abi import CameraKind, LancerError, LightKind, Pass, PassKind, PixelFilter
+from addon.bindings.mattes import hashes, ids, manifest
 from addon.bindings.numbered_pass import NumberedPass
 from addon.bindings.session import Scene, Session
 from addon.bindings.snapshot import Camera, Instance, InstanceMotion, Light, Material, Motion, Output
 from addon.bindings.texels import DTYPE, EMPTY, Texels
-from addon.export.mattes import hashes, ids, manifest
 
 GLOW = Material("glow", lobes=(), emission=(1.0, 1.0, 1.0))
 MOST = 1024  # light groups and AOVs of a kind

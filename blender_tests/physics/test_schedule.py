@@ -11,7 +11,7 @@ from addon.measure.schedule import SAMPLES, TARGET, Schedule
 
 
 def error(value, high, cannot_exclude=0.0):
-    return PictureError(value, 0.9 * value, high, cannot_exclude, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 16, 16)
+    return PictureError(value, 0.9 * value, high, cannot_exclude, *[0.0] * 10, 16, 16)
 
 
 class GivenSession:

@@ -50,7 +50,8 @@ def export():
     result["stretched"] = _told(_export(stretched, messages))
     portal = stage.light("AREA")
     portal.data.cycles.is_portal = True
-    result["portal"] = _export(portal, messages)
+    opening = _export(portal, messages)
+    result["portal"] = {"opening": opening.opening, "emission": list(map(float, opening.emission))}
     plain, colored = stage.light("POINT"), stage.light("POINT")
     _nodes(colored, (0.5, 0.25, 1.0), 3.0)
     levels = [_export(thing, messages).emission for thing in (colored, plain)]

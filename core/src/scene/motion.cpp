@@ -28,14 +28,14 @@ glm::dmat3 nearest_rotation(const glm::dmat3 &map) {
 
 double norm(const glm::dmat3 &m) { return std::sqrt(glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2])); }
 
-// Returns the quaternion at a share of the way between two of them, which are `angle` apart.
-glm::dquat turned(const glm::dquat &from, const glm::dquat &to, double angle, double share) {
+// Returns the quaternion at a share of the way from one key's to another's.
+glm::dquat turned(const PlacementKey &key, const glm::dquat &to, double share) {
   // Below this angle, the chord is the arc to the last digit of double.
   constexpr double kStraight = 1e-8;
-  if (angle < kStraight)
-    return glm::normalize(from * (1.0 - share) + to * share);
-  const double of_from = sin((1.0 - share) * angle) / sin(angle), of_to = sin(share * angle) / sin(angle);
-  return from * of_from + to * of_to;
+  if (key.angle < kStraight)
+    return glm::normalize(key.rotation * (1.0 - share) + to * share);
+  const double of_from = sin((1.0 - share) * key.angle) / key.sine, of_to = sin(share * key.angle) / key.sine;
+  return key.rotation * of_from + to * of_to;
 }
 
 } // namespace
@@ -57,6 +57,7 @@ std::vector<PlacementKey> placement_keys(std::span<const Affine> maps) {
     // The angle from the chord keeps its digits where the rotations are nearly equal.
     const glm::dquat chord = keys[i + 1].rotation - keys[i].rotation;
     keys[i].angle = 2.0 * asin(std::min(0.5 * std::sqrt(glm::dot(chord, chord)), 1.0));
+    keys[i].sine = sin(keys[i].angle);
   }
   return keys;
 }
@@ -66,8 +67,7 @@ Affine placement_at(std::span<const PlacementKey> keys, float time) {
   const PlacementKey &from = keys[at.key], &to = keys[at.key + 1];
   const double share = double(at.share);
   Affine map;
-  map.linear = glm::mat3_cast(turned(from.rotation, to.rotation, from.angle, share)) *
-               (from.stretch * (1.0 - share) + to.stretch * share);
+  map.linear = glm::mat3_cast(turned(from, to.rotation, share)) * (from.stretch * (1.0 - share) + to.stretch * share);
   map.translation = from.translation * (1.0 - share) + to.translation * share;
   return map;
 }

@@ -42,6 +42,7 @@ struct PlacementKey {
   glm::dquat rotation{1.0, 0.0, 0.0, 0.0};
   glm::dmat3 stretch{1.0};
   double angle = 0.0; // between this rotation and the next key's, as unit quaternions
+  double sine = 0.0;  // of the angle
 };
 
 // Decomposes the maps of successive keys; their linear parts must be invertible.

@@ -23,7 +23,8 @@ public:
 
 private:
   std::vector<float> open_;
-  std::vector<double> sums_; // up to the end of each step, the last one is 1
+  std::vector<double> sums_;     // up to the end of each step, the last one is 1
+  std::vector<uint32_t> starts_; // for each of kStarts equal parts of the numbers: the first step of a number in it
 };
 
 // The camera and the shutter over time; lengths in the unit of the camera.
@@ -36,8 +37,8 @@ struct Motion {
 
   // Returns the time of a sample in a row of the picture; row: from the top, 0 ... 1.
   float time(float u, double row) const;
-  // Returns a camera as it is at a time.
-  Camera camera_at(const Camera &camera, float time) const;
+  // Moves a camera to its place at a time; all but that must be as at the keys.
+  void move(Camera &camera, float time) const;
   // Whether rays need a time.
   bool wanted() const { return shutter.opens(); }
 };

@@ -5,7 +5,7 @@ namespace lancer {
 const CameraKernel &camera_kernel() { return LANCER_CHOSEN_SHADING_KERNEL(camera_kernel); }
 
 CameraStage::CameraStage(const Camera &camera, const Motion &motion, const IntegratorSettings &settings)
-    : camera_(camera), motion_(motion), filter_(settings.filter(), settings.filter_width), seed_(settings.seed),
+    : camera_(camera), motion_(motion), moved_(camera), filter_(settings.filter(), settings.filter_width), seed_(settings.seed),
       middle_(settings.kind() != IntegratorKind::Path && settings.samples == 1),
       plain_(!middle_ && !camera.is_panorama() && !camera.is_stereo() && !(motion.shutter.opens() && !motion.cameras.empty()) &&
              (!(camera.lens_radius > 0.0) || camera.aperture_blades < 3)),
@@ -54,8 +54,8 @@ uint32_t CameraStage::aim(std::span<const SampleAddress> addresses) {
 bool CameraStage::aim_alone(const SampleAddress &address, uint32_t lane) {
   const uint32_t x = camera_.x + address.x, y = camera_.y + address.y;
   const Sampler sampler(seed_, x, y, address.sample);
-  const bool moves = motion_.shutter.opens() && !motion_.cameras.empty();
-  const Camera camera = moves ? motion_.camera_at(camera_, times_[lane]) : camera_;
+  if (motion_.shutter.opens() && !motion_.cameras.empty())
+    motion_.move(moved_, times_[lane]);
   glm::dvec2 raster(double(x) + 0.5, double(y) + 0.5), lens(0.0);
   if (!middle_) {
     const glm::vec2 u = sampler.get2(kDimensionPixel);
@@ -63,7 +63,7 @@ bool CameraStage::aim_alone(const SampleAddress &address, uint32_t lane) {
     if (camera_.lens_radius > 0.0)
       lens = camera_.aperture(sampler.get2(kDimensionLens));
   }
-  const Ray ray = camera.ray(raster, lens);
+  const Ray ray = moved_.ray(raster, lens);
   rays_.pixel[lane] = sampler.pixel();
   put(ray.o, rays_.o, lane);
   put(ray.d, rays_.d, lane);

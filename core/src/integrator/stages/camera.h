@@ -74,6 +74,7 @@ private:
 
   const Camera &camera_;
   const Motion &motion_;
+  Camera moved_; // the camera at the time of the last sample
   PixelFilter filter_;
   uint32_t seed_;
   bool middle_, plain_; // plain: kernels support the camera
