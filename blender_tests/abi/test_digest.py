@@ -38,7 +38,7 @@ def test_any_change_of_the_scene_changes_it_and_none_of_the_picture():
         except ValueError:
             refused.add(path)
     assert len(paths) > 200 and {path[0] for path in paths} == set(names)
-    # A mesh has no attribute of another domain, no pass has a number beyond the last, and each has as many channels as its kind.
+    # A mesh has no attribute of another domain, no pass has a number beyond the last, and each has the channels of its kind.
     assert {path[-1] for path in refused if path[0] != "settings"} == {"domain", "channels", "kind"}
     assert kept == {path for path in paths if path[0] in ("camera", "settings", "named_passes")} - refused
 
