@@ -34,7 +34,9 @@ def bakes(dice, records, is_asked=False):
             fields["axes"] = [dice.pick(_AXES) for _ in range(3)]
     if dice.chance(0.2):
         fields["view_from"] = "ACTIVE_CAMERA"
-    if dice.chance(0.3):
+    shape = next(record.fields["shape"] for record in records if record.name == _mesh_of(fields["object"], records))
+    # A flat copy lies in its source, where rounding decides what its rays meet.
+    if shape != "plane" and dice.chance(0.3):
         fields["onto"] = {"scale": dice.number(1.02, 1.2), "extrusion": dice.number(0.1, 0.5)}
         if dice.chance(0.4):
             fields["onto"]["distance"] = dice.number(0.2, 1.0)
@@ -43,6 +45,10 @@ def bakes(dice, records, is_asked=False):
     if dice.chance(0.2):
         fields["attribute"] = dice.pick(("POINT", "CORNER"))
     return [Record("bake", "Bake", fields)]
+
+
+def _mesh_of(reference, records):
+    return next(record.fields["data"][1:] for record in records if record.verb == "object" and f"@{record.name}" == reference)
 
 
 def _can_be_baked(record, records):
