@@ -15,7 +15,7 @@ from .graph import NodeGraph
 from .hit_attributes import of_all_hits
 from .images import Images
 from .normals import bump, displacement_height
-from .outputs import read_outputs
+from .outputs import read_lone_outputs, read_outputs
 from .shader_cache import ShaderCache, Sources
 from .sockets import RULES, output_node
 from .surface import Surface
@@ -168,7 +168,7 @@ def _from_nodes(material, graph, aovs):
     output = output_node(tree, "OUTPUT_MATERIAL") if tree is not None else None
     if output is None:
         messages.add(f"{who}: has no Material Output node that Cycles uses, black is used", severity=Severity.WRONG)
-        return {"lobes": (), "outputs": read_outputs(graph, tree, aovs) if tree is not None else ()}
+        return {"lobes": (), "outputs": read_lone_outputs(graph, tree, aovs)}
     site = Site(output)
     has_surface = graph.is_linked(site, ("Surface",))
     graph.has_volume = graph.is_linked(site, ("Volume",))

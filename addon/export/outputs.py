@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+import bpy
+
 from ..bindings.enums import PassKind
 from ..bindings.numbered_pass import NumberedPass
 from ..bindings.shading import Output
@@ -35,6 +37,11 @@ def aovs_of(view_layer):
 def rendered_aovs(view_layer, passes):
     """Return the Aovs of a view layer that are among the passes of an export."""
     return tuple(aov for aov in aovs_of(view_layer) if aov.source in passes)
+
+
+def read_lone_outputs(graph, tree, aovs):
+    """Return the Outputs of a tree that shows nothing; Cycles 3 has none of them."""
+    return read_outputs(graph, tree, aovs) if tree is not None and bpy.app.version >= (4, 0) else ()
 
 
 def read_outputs(graph, tree, aovs):

@@ -11,7 +11,7 @@ from ..bindings.parameters import kept, reached
 from ..messages.severity import Severity
 from .graph import NodeGraph
 from .lights import lit_surfaces
-from .outputs import read_outputs
+from .outputs import read_lone_outputs, read_outputs
 from .shader_cache import Sources
 from .sockets import output_node
 from .surface import emission_of
@@ -86,11 +86,9 @@ def _nodes(world, graph, who, messages, aovs):
     if bpy.app.version < (5, 0) and not world.use_nodes:
         return messages.color(world.color, who, "colour"), ()
     tree = graph.tree_of(world)
-    if tree is None:
-        return (0.0, 0.0, 0.0), ()
-    output = output_node(tree, "OUTPUT_WORLD")
+    output = output_node(tree, "OUTPUT_WORLD") if tree is not None else None
     if output is None:
-        return (0.0, 0.0, 0.0), read_outputs(graph, tree, aovs)
+        return (0.0, 0.0, 0.0), read_lone_outputs(graph, tree, aovs)
     if output.inputs["Volume"].is_linked:
         text = f"{who}: volumes are not supported, its background alone is shown"
         messages.add(text, "feature:volume of the world", severity=Severity.LEFT_OUT)

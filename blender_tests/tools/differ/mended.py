@@ -291,6 +291,13 @@ SCENES = {
             own={"no_bump_correction": True},
         ),
     ],
+    "AOVs of trees that show nothing": [
+        _frame(),
+        Record("aov", "Tint", {"type": "COLOR"}),
+        Record("world", "World", {}),
+        Record("node", "World/1", {"tree": "World", **_node("OutputAOV", {"Color": [0.2, 3.0, -0.5]}), "aov": "Tint"}),
+        *_thing("cube", {**_node("OutputAOV", {"Color": _WHITE}), "aov": "Tint"}),
+    ],
     "light below a coat at the end of a path": [
         _frame(bounces=0),
         *_thing(

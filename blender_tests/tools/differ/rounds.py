@@ -40,7 +40,7 @@ def run(case, folder, most_samples, first_seed, hasty):
 def _render(case, outcome, folder, most_samples, first_seed, hasty):
     scene = contest.open_empty()
     baked = case.build(scene)
-    render = engines.render if baked is None else baked.render
+    render = baked and baked.render
     both = [contest.Halves("LANCER", render), contest.Halves("CYCLES", render)]
     samples, seed = min(case.samples, most_samples), first_seed
     while True:

@@ -38,11 +38,11 @@ class Outcome:
 
 
 class Halves:
-    """The two halves of one engine's pictures, each the mean of its renders. render: as engines.render."""
+    """The two halves of one engine's pictures, each the mean of its renders. render: in place of engines.render."""
 
-    def __init__(self, engine, render=engines.render):
+    def __init__(self, engine, render=None):
         self.engine = engine
-        self._render = render
+        self._render = render or engines.render
         self.seconds = 0.0
         self._sums = ({}, {})
         self._samples = 0
