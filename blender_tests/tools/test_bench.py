@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tools.bench import contest, goals, page, plan, rays
+from tools.bench import bakes, contest, goals, page, plan, rays
 from tools.harness.page import marks
 from tools.harness.verdicts import NOT_MEASURED
 
@@ -33,7 +33,7 @@ def test_goals_take_means_over_scenes_of_the_same_picture():
 
 def test_goals_name_every_row_and_what_is_not_measured():
     verdicts = {verdict.what: verdict for verdict in goals.judge(_figures())}
-    assert len(verdicts) == 28
+    assert len(verdicts) == 29
     rate = verdicts["samples/s against Cycles"]
     assert (rate.measured, rate.reached) == ("2.00x, least 1.00x (two), 2 scenes", False)
     assert verdicts["efficiency against Cycles"].reached is True
@@ -60,6 +60,28 @@ def test_goals_of_several_figures_need_them_all():
 def test_no_leaks_among_few_rays_prove_nothing(rays, leaks, reached):
     verdicts = goals.judge({"rays": {"leak_rays": rays, "leaks": leaks}})
     assert next(verdict for verdict in verdicts if verdict.goal == "0 in 1e8").reached is reached
+
+
+def test_bakes_compare_the_noise_of_texels_with_a_surface(monkeypatch, tmp_path):
+    def worker(_module, _task, engine, seed, path, **_):
+        noise = np.random.default_rng([seed, engine == "CYCLES"]).normal(0.0, 0.1 if engine == "LANCER" else 0.2, (100, 1))
+        # Half of the texels have no surface.
+        np.save(path, np.concatenate([2.0 + noise * np.ones((100, 3)), np.zeros((100, 3))]))
+        return {"seconds": 2.0, "cpu_seconds": 1.0 if engine == "LANCER" else 3.0, "setup_seconds": 0.5}
+
+    monkeypatch.setattr(bakes.workers, "ask", worker)
+    monkeypatch.setattr(bakes.jobs, "OUTPUT", tmp_path)
+    (tmp_path / "pictures").mkdir()
+    found = bakes.measure(20, 2, False, lambda _: None)
+    figures = found["room, combined"]
+    # The variances of 100 texels in 20 rounds are known to 3 % each; four times that, and the level is 1 % above 2.
+    assert np.mean(figures["LANCER"]["squared_errors"]) == pytest.approx((0.1 / 2.02) ** 2, rel=0.13)
+    assert figures["efficiency_ratio"]["value"] == pytest.approx(4.0, rel=0.2)
+    assert figures["efficiency_ratio_of_processors"]["value"] == pytest.approx(12.0, rel=0.2)
+    assert figures["level_ratio"] == pytest.approx(1.0, rel=0.01)
+    row = next(row for row in goals.judge({"bakes": found}) if row.what == "bakes: efficiency against Cycles")
+    assert row.reached and "4 scenes" in row.measured
+    assert goals.bake_ratios({"bakes": {"missing": "no worker"}}) == {}
 
 
 def test_plans():
@@ -142,8 +164,8 @@ def test_tables_replace_what_is_between_the_marks(tmp_path):
     assert text.startswith("before\n") and text.endswith("after\n") and "old" not in text
     assert "LuxCore (no wheel)" in text and text.count("Commit abc.") == 1
     assert "| samples/s against Cycles | 3.5x in geometric mean | 2.00x, least 1.00x (two), 2 scenes | missed |" in text
-    # A head, a line below it and twelve ratios; only the page has the scenes.
-    assert sum(line.startswith("|") for line in text.splitlines()) == 14 and "a scene" not in text
+    # A head, a line below it and thirteen ratios; only the page has the scenes.
+    assert sum(line.startswith("|") for line in text.splitlines()) == 15 and "a scene" not in text
     # The table for users has the scenes on which both renderers were timed.
     text = readme.read_text()
     assert text.startswith("before\n") and text.endswith("after\n") and "old" not in text

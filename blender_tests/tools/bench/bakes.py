@@ -16,7 +16,7 @@ _ENGINES = ("LANCER", "CYCLES")
 def measure(rounds, threads, quick, say):
     """Return {scene, kind: figures}; each round has another seed.
 
-    efficiency_ratio: Lancer's over Cycles' of 1 / (squared error x seconds).
+    efficiency_ratio: Lancer's over Cycles' of 1 / (squared error x seconds); of_processors: by their seconds.
     """
     found = {}
     for name, (thing, samples) in _BAKED.items():
@@ -47,7 +47,8 @@ def _both(rounds, settings):
         apart = (pictures[engine] - means[engine])[:, shown] / level
         squares[engine] = (np.mean(apart**2, axis=1) * rounds / (rounds - 1)).tolist()
         result[engine] = middles([answer for answer, _ in found]) | {"squared_errors": squares[engine]}
-    pairs = [(squares[engine], [answer["seconds"] for answer, _ in turns[engine]]) for engine in _ENGINES]
-    result["efficiency_ratio"] = estimates.efficiency_ratio(*pairs)
+    for ratio, clock in (("efficiency_ratio", "seconds"), ("efficiency_ratio_of_processors", "cpu_seconds")):
+        pairs = [(squares[engine], [answer[clock] for answer, _ in turns[engine]]) for engine in _ENGINES]
+        result[ratio] = estimates.efficiency_ratio(*pairs)
     result["level_ratio"] = float(means["LANCER"][shown].mean() / means["CYCLES"][shown].mean())
     return result
