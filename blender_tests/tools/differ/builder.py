@@ -18,6 +18,7 @@ from . import (
     build_nodes,
     build_outputs,
     build_photometry,
+    build_views,
 )
 
 _MODIFIER_SHAPES = {"MESH"}
@@ -29,6 +30,7 @@ class Builder:
         self.things = {}  # by the record's name
         self.trees = {}
         self.bake = None  # in place of a picture
+        self._views = None
 
     def find(self, name):
         return None if name is None else self.things.get(name.removeprefix("@"))
@@ -38,6 +40,8 @@ class Builder:
             getattr(self, f"_{record.verb}")(record.name, record.fields)
         if self.scene.camera is None:
             parts.add_camera(self.scene, (0, -5, 2), (0, 0, 0.9))
+        if self._views is not None:
+            build_views.build_views(self.scene, self._views)
 
     # ---- data ----
 
@@ -265,6 +269,10 @@ class Builder:
         thing = self.find(fields.get("object"))
         if thing is not None and thing.type == "MESH":
             self.bake = build_bakes.Bake(self.scene, fields, thing)
+
+    def _eyes(self, name, fields):
+        # They need the camera, which any scene has in the end.
+        self._views = fields
 
     def _linking(self, name, fields):
         build_links.build_linking(name, fields, self.find)

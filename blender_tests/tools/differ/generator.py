@@ -14,6 +14,7 @@ from . import (
     random_outputs,
     random_photometry,
     random_properties,
+    random_views,
 )
 from .dice import Dice
 from .random_nodes import Trees
@@ -21,7 +22,7 @@ from .random_things import Things
 from .record import Record
 
 # What is rare in scenes unless it is asked for.
-FEATURES = ("motion", "outputs", "links", "limits", "bakes")
+FEATURES = ("motion", "outputs", "links", "limits", "bakes", "views")
 
 
 def describe(seed, asked=()):
@@ -79,6 +80,7 @@ def describe(seed, asked=()):
     everything += random_links.links(dice, everything, "links" in asked)
     everything += random_limits.limits(dice, everything, "limits" in asked)
     everything += random_bakes.bakes(dice, everything, "bakes" in asked)
+    everything += random_views.views(dice, everything, "views" in asked)
     return [record for record in everything if record.fields or record.verb not in ("film", "layer")]
 
 

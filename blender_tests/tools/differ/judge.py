@@ -29,7 +29,7 @@ def make_case(records):
     fields["limited"] = {**frame.get("limited", {}), **({"use_fast_gi": True} if "fast_gi" in verbs else {})}
     fields["simplify"] = not verbs.isdisjoint(("culling", "texels"))
     fields["mattes"] = tuple(frame.get("mattes", ()))
-    if "bake" in verbs:
+    if not verbs.isdisjoint(("bake", "eyes")):
         fields |= {"passes": ("Combined",), "mattes": ()}
     kind = frame.get("kind", "LOBES")
     if kind == "DATA":

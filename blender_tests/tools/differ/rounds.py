@@ -81,7 +81,8 @@ def _leave_out_invalid(ours, theirs):
 
 
 def _refuse_unlike(case, ours, theirs):
-    missing = set(case.passes) - set(theirs)
+    # With several views each has a picture of its own, by its name behind that of the pass.
+    missing = {name for name in case.passes if not any(each.partition(".")[0] == name for each in theirs)}
     if missing:
         raise ValueError(f"Cycles wrote no pass {', '.join(sorted(missing))}")
     for name, (half, _) in theirs.items():
@@ -137,7 +138,7 @@ def _least_level(case, name, level):
     """Return the least level of a pass, where the level of Combined is given."""
     if name.startswith(case.mattes):
         return _MATTE
-    return max(_DARK, 0.0 if name in ("Combined", "Alpha") else _LEAST_SHARE * level)
+    return max(_DARK, 0.0 if name.partition(".")[0] in ("Combined", "Alpha") else _LEAST_SHARE * level)
 
 
 def _is_settled(case, outcome, most_samples, hasty):

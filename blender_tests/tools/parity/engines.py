@@ -148,6 +148,8 @@ def render(scene, engine, case, samples, seed, folder):
     if os.path.exists(path):
         os.remove(path)
     exr.write_settings(scene, path)
+    if scene.render.use_multiview:
+        scene.render.image_settings.views_format = "MULTIVIEW"
     bpy.ops.render.render(write_still=True)
     if not os.path.exists(path):
         raise RuntimeError(f"{engine} wrote no picture")
@@ -156,13 +158,16 @@ def render(scene, engine, case, samples, seed, folder):
     stored = exr.read(path)
     result = {}
     for name in case.passes:
-        picture = stored.get(pass_name(name))
-        if picture is None:
-            continue
-        if name == "Combined":
-            result["Alpha"] = picture[..., 3:4]
-            picture = picture[..., :3]
-        result[name] = picture
+        for stored_name in stored:
+            # With several views each has a picture, by its name behind that of the pass.
+            pass_, dot, view = stored_name.partition(".") if scene.render.use_multiview else (stored_name, "", "")
+            if pass_ != pass_name(name):
+                continue
+            picture = stored[stored_name]
+            if name == "Combined":
+                result[f"Alpha{dot}{view}"] = picture[..., 3:4]
+                picture = picture[..., :3]
+            result[f"{name}{dot}{view}"] = picture
     for title in case.mattes:
         result |= _named_mattes(path, stored, title)
     return result
