@@ -3,9 +3,10 @@
 from .record import Record
 
 _SHARE = 0.06
+# Without UV, which Cycles bakes as black where no node of the material reads a map.
 _TYPES = {
     "COMBINED": 4, "DIFFUSE": 3, "GLOSSY": 2, "TRANSMISSION": 1, "AO": 1, "SHADOW": 1, "EMIT": 2, "ENVIRONMENT": 1,
-    "NORMAL": 2, "POSITION": 1, "UV": 1, "ROUGHNESS": 2,
+    "NORMAL": 2, "POSITION": 1, "ROUGHNESS": 2,
 }  # fmt: skip
 _PARTS = ("DIRECT", "INDIRECT", "COLOR")
 _COMPONENTS = ("DIFFUSE", "GLOSSY", "TRANSMISSION", "EMIT")
@@ -42,7 +43,8 @@ def bakes(dice, records, is_asked=False):
             fields["onto"]["distance"] = dice.number(0.2, 1.0)
         if dice.chance(0.3):
             fields["onto"]["cage"] = dice.number(1.25, 1.6)
-    if dice.chance(0.2):
+    # The places of a few corners may have a mean near 0, of which rounding is a large share.
+    if kind != "POSITION" and dice.chance(0.2):
         fields["attribute"] = dice.pick(("POINT", "CORNER"))
     return [Record("bake", "Bake", fields)]
 
