@@ -59,6 +59,13 @@ def aside_lamp():
     return Light("aside", rotate_x(1.0), LightKind.SUN, emission=(3.0,) * 3)
 
 
+def test_the_world_behind_clear_catchers_is_in_its_pass_three_times():
+    """As in Cycles: where the catcher is met, and through it by the path among all objects and by that among catchers."""
+    clear = dataclasses.replace(lambert(0.0), lobes=(), transmittance=(1.0, 1.0, 1.0))
+    shown = scene([FLOOR], [clear], world=0.25, samples=4, catchers=Catchers.APART, passes=(Pass.COMBINED, Pass.ENVIRONMENT))
+    assert read(shown, Pass.ENVIRONMENT)[0][0, 0].tolist() == [0.75] * 3
+
+
 @pytest.mark.parametrize("settings", [{}, {"split_paths": 4, "split_lights": 2}, {"clamp_indirect": 0.1, "clamp_direct": 0.2}])
 def test_catchers_alone_keep_all_their_light(settings):
     """Where every object is a catcher, both paths are the same, to the last bit."""

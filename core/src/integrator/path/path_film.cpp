@@ -141,8 +141,12 @@ void PathFilm::add(const Path &path, const glm::vec3 &found, bool environment, u
   // Light that was scattered at most once is direct.
   const bool indirect = path.scatterings > 1;
   const glm::vec3 radiance = indirect ? found : clamped_direct(found, float(path.sharers), !path.of_catchers);
-  if (path.of_catchers)
+  if (path.of_catchers) {
+    // As in Cycles, the world that is seen through clear catchers is in its pass once more.
+    if (environment && path.in_view)
+      passes.add_seen(result, radiance, true);
     return catchers_.add(path.sample, sum(path), radiance, indirect, *extras_);
+  }
   // A transparent film leaves the environment behind it to the environment's pass: picture and guides have none of it.
   const bool hidden = environment && settings_.film_transparent && path.in_view;
   if (wants_guides(path) && !hidden)
