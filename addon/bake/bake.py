@@ -3,6 +3,7 @@
 import dataclasses
 import math
 
+import bpy
 import numpy as np
 
 from ..bindings import snapshot
@@ -22,6 +23,8 @@ _STEP = 0.05  # seconds between polls
 _LIT = frozenset({"COMBINED", "AO", "DIFFUSE", "GLOSSY", "TRANSMISSION", "SHADOW"})
 # Samples of passes without light: a texel's mean over its own area.
 _DATA_SAMPLES = 64
+# The roughness of a surface without a lobe that has one.
+_BARE_ROUGHNESS = 1.0 if bpy.app.version >= (4, 2) else 0.0
 
 
 class Bake:
@@ -54,7 +57,8 @@ class Bake:
         height, width = rows.shape
         camera = _camera(self._depsgraph, width, height)
         self._baked.make(self._engine, self._depsgraph, self._thing, asked, camera, self._tell, self._is_over)
-        texels = Texels(rows, self._baked.row, _view(self._depsgraph.scene, asked.kind), asked.lacks)
+        view = _view(self._depsgraph.scene, asked.kind)
+        texels = Texels(rows, self._baked.row, view, asked.lacks, _BARE_ROUGHNESS)
         with lowered(lambda: Session.bake(self._baked.scene, camera, self._settings(asked), texels)) as session:
             self._tell(Messages.of_library(session.messages()))
             schedule = self._render(session)

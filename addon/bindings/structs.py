@@ -440,6 +440,8 @@ class Bake(Structure):
         ("instance", c_uint32),
         ("view", c_uint32),
         ("lacks", c_uint32),
+        ("bare_roughness", c_float),
+        ("reserved", c_uint32),
     ]
 
 

@@ -20,11 +20,12 @@ class Texels:
     instance: int
     view: BakeView = BakeView.ABOVE
     lacks: BakeLacks = BakeLacks(0)
+    bare_roughness: float = 0.0
 
     def as_struct(self):
         """Return the struct, which refers to rows."""
         rows = np.ascontiguousarray(self.rows, DTYPE)
         address = ctypes.cast(rows.ctypes.data, ctypes.POINTER(abi.Texel))
-        struct = abi.Bake(address, rows.size, int(self.instance), int(self.view), int(self.lacks))
+        struct = abi.Bake(address, rows.size, int(self.instance), int(self.view), int(self.lacks), self.bare_roughness)
         struct.rows = rows
         return struct

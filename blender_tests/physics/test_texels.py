@@ -231,3 +231,19 @@ def test_shadows_of_texels():
     dark = np.broadcast_to(places()[0] > 0.0, (SIZE, SIZE)).copy()
     dark[0] = False
     assert (factor[dark] == 0.0).all() and (factor[~dark] == 1.0).all()
+
+
+@pytest.mark.parametrize("bare", [0.0, 1.0])
+def test_roughness_without_a_lobe_that_counts(bare):
+    """Diffuse lobes do not count; light that passes straight counts as that of a mirror."""
+    matt = dataclasses.replace(texels(), bare_roughness=bare)
+    np.testing.assert_array_equal(bake(lit_quad(), matt, Pass.ROUGHNESS, samples=4)[0], bare)
+    veil = dataclasses.replace(lambert(0.5), transmittance=(0.5,) * 3)
+    veiled = lit_quad().replaced(materials=(veil,))
+    np.testing.assert_array_equal(bake(veiled, matt, Pass.ROUGHNESS, samples=4)[0], 0.0)
+
+
+@pytest.mark.parametrize("bare", [-0.5, 2.0, float("nan")])
+def test_a_roughness_out_of_range_is_refused(bare):
+    with pytest.raises(LancerError, match="bare roughness"):
+        bake(lit_quad(), dataclasses.replace(texels(), bare_roughness=bare))

@@ -1270,6 +1270,8 @@ typedef struct lancer_bake {
   uint32_t instance;          /* its number in order of adding; a mesh. All texels of one that was left out are empty */
   uint32_t view;              /* LANCER_BAKE_* */
   uint32_t lacks;             /* LANCER_BAKE_LACKS_*, added */
+  float bare_roughness;       /* 0 ... 1: ROUGHNESS where no lobe counts; 1 since Blender 4.2 */
+  uint32_t reserved;
 } lancer_bake;
 /* As lancer_session_create, for a session whose samples begin on a surface: its passes are those of a picture whose pixels see
  * their texels. PATH only. Each sample takes a random place of its texel on its triangle. Of the camera, its size counts, its

@@ -14,9 +14,15 @@ from .worker import set_samples, set_up
 _LIGHT = {"DIRECT", "INDIRECT", "COLOR"}
 
 
+# Faces of one material in one plane shadow each other in Cycles alone. The object hovers above its ground, so far that light
+# reaches its lower side, too.
+_LIFT = 0.1
+
+
 def _unwrapped(thing):
     """Select the object alone, with a mesh and faces of its own in the square of textures."""
     thing.data = thing.data.copy()
+    thing.location.z += _LIFT
     bpy.ops.object.select_all(action="DESELECT")
     thing.select_set(True)
     bpy.context.view_layer.objects.active = thing

@@ -52,7 +52,13 @@ Bake read_bake(const lancer_bake &source, const Scene &scene, const Camera &came
   constexpr uint32_t all = LANCER_BAKE_LACKS_DIFFUSE | LANCER_BAKE_LACKS_GLOSSY | LANCER_BAKE_LACKS_TRANSMISSION;
   if (source.lacks & ~all)
     bad_argument("bake: lacks " + std::to_string(source.lacks) + " has unknown bits");
-  Bake result{.instance = index_of(scene, source.instance), .view = BakeView(source.view), .lacks = source.lacks, .texels = {}};
+  if (!(source.bare_roughness >= 0.0f && source.bare_roughness <= 1.0f))
+    bad_argument("bake: bare roughness " + std::to_string(source.bare_roughness) + " is not in 0 ... 1");
+  Bake result{.instance = index_of(scene, source.instance),
+              .view = BakeView(source.view),
+              .lacks = source.lacks,
+              .bare_roughness = source.bare_roughness,
+              .texels = {}};
   result.texels.resize(count);
   if (result.instance == kNone)
     return result;

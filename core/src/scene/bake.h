@@ -25,8 +25,9 @@ struct Texel {
 struct Bake {
   uint32_t instance = kNone; // index in the geometry; kNone: the instance was left out, and no texel shows anything
   BakeView view = BakeView::Above;
-  uint32_t lacks = 0;        // bits of components whose lobes the surface lacks at first sight
-  std::vector<Texel> texels; // by row from the bottom
+  uint32_t lacks = 0;          // bits of components whose lobes the surface lacks at first sight
+  float bare_roughness = 0.0f; // where no lobe counts
+  std::vector<Texel> texels;   // by row from the bottom
 };
 
 } // namespace lancer

@@ -59,12 +59,14 @@ template <class F> struct Mixture {
   F roughness{0.0f}; // as of shader nodes
 };
 
-// Without blending, transmitted light is treated as mirrored. ended: lanes at the end of a path, where no lobe scatters. baked:
-// the roughness is that of bakes, which leave diffuse lobes out, as in Cycles.
+// Without blending, transmitted light is treated as mirrored. ended: lanes at the end of a path, where no lobe scatters. bare:
+// of bakes, the roughness where no lobe counts; negative: no bake. As in Cycles, bakes leave diffuse lobes out, and light that
+// passes straight counts as that of a mirror.
 template <class F>
-LANCER_LANE Mixture<F> mix(const Bsdf<F> &bsdf, const Vec3<F> &transmittance, MaskOf<F> ended, bool blended, bool baked) {
+LANCER_LANE Mixture<F> mix(const Bsdf<F> &bsdf, const Vec3<F> &transmittance, MaskOf<F> ended, bool blended, float bare) {
   const F zero(0.0f);
-  F rough = zero; // weights of the lobes in the roughness
+  const bool baked = bare >= 0.0f;
+  F rough = baked ? mean(transmittance) : zero; // weights in the roughness
   Mixture<F> mixture;
   if (!blended) {
     mixture.specular = transmittance;
@@ -90,7 +92,7 @@ LANCER_LANE Mixture<F> mix(const Bsdf<F> &bsdf, const Vec3<F> &transmittance, Ma
     mixture.specular = select(there, mixture.specular + (1.0f - share) * albedo, mixture.specular);
   }
   mixture.normal = select(mixture.all > zero, mixture.normal / mixture.all, mixture.normal);
-  mixture.roughness = select(rough > zero, mixture.roughness / rough, zero);
+  mixture.roughness = select(rough > zero, mixture.roughness / rough, baked ? F(bare) : zero);
   return mixture;
 }
 

@@ -20,7 +20,7 @@ MeansWanted means_wanted(const IntegratorSettings &settings) {
           .shown = passes.components() || settings.ambient > 0.0f,
           .mixture = passes.guides(),
           .blended = settings.blended_features,
-          .baked = settings.bake != nullptr};
+          .bare_roughness = settings.bake ? settings.bake->bare_roughness : -1.0f};
 }
 
 } // namespace

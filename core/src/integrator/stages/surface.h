@@ -82,8 +82,8 @@ struct alignas(64) LobeBlock {
 // Means over lobes that passes ask for.
 struct MeansWanted {
   bool normal = false, matt_normal = false, shown = false, mixture = false;
-  bool blended = false; // Mixture by the rule of Blender 5.2
-  bool baked = false;   // roughness by that of bakes
+  bool blended = false;         // Mixture by the rule of Blender 5.2
+  float bare_roughness = -1.0f; // of bakes, where no lobe counts; negative: no bake
 };
 struct alignas(64) MeanBlock {
   Floats normal[3], matt_normal[3]; // mean normals of all lobes and of the diffuse ones

@@ -165,7 +165,7 @@ void describe(const MaterialBlock &materials, const LobeBlock &lobes, const Mean
     if (!wanted.mixture)
       continue;
     const Mixture<F> mixture =
-        mix(bsdf, load3(materials.transmittance, first), some(materials.ends, first), wanted.blended, wanted.baked);
+        mix(bsdf, load3(materials.transmittance, first), some(materials.ends, first), wanted.blended, wanted.bare_roughness);
     store3(means.mixed_normal, first, mixture.normal);
     store3(means.mixed_diffuse, first, mixture.diffuse);
     store3(means.mixed_specular, first, mixture.specular);
