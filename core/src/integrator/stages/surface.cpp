@@ -2,6 +2,7 @@
 
 #include "compile/scene.h"
 #include "integrator/stages/light_passes.h"
+#include "scene/bake.h"
 #include "simd/vectors.h"
 
 #include <algorithm>
