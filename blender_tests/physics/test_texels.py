@@ -237,9 +237,9 @@ def test_shadows_of_texels():
 def test_roughness_without_a_lobe_that_counts(bare):
     """Diffuse lobes do not count; light that passes straight counts as that of a mirror."""
     matt = dataclasses.replace(texels(), bare_roughness=bare)
-    np.testing.assert_array_equal(bake(lit_quad(), matt, Pass.ROUGHNESS, samples=4)[0], bare)
+    np.testing.assert_array_equal(bake(lit_quad(blended_features=True), matt, Pass.ROUGHNESS, samples=4)[0], bare)
     veil = dataclasses.replace(lambert(0.5), transmittance=(0.5,) * 3)
-    veiled = lit_quad().replaced(materials=(veil,))
+    veiled = lit_quad(blended_features=True).replaced(materials=(veil,))
     np.testing.assert_array_equal(bake(veiled, matt, Pass.ROUGHNESS, samples=4)[0], 0.0)
 
 
