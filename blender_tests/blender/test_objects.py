@@ -36,6 +36,11 @@ def test_switches(case):
     assert not others
 
 
+def test_aovs_at_shadow_catchers_are_told(case):
+    plain, caught = case("caught_aovs")
+    assert plain == [] and ["twice" in line for line in caught] == [True]
+
+
 def test_flat_objects_that_cycles_shows_otherwise(case):
     """Cycles hides shared meshes, turns smooth normals to the wrong side, and shadows coplanar faces by each other."""
     assert sorted(case("flat")) == [

@@ -5,6 +5,7 @@ import stage
 from export_cases import export_told, row_of_cubes
 
 from addon.bindings.enums import InstanceFlag, Ray
+from addon.engine import last_messages
 
 
 def _rows(snapshot):
@@ -49,6 +50,19 @@ def switches():
     _named("catcher", is_shadow_catcher=True)
     snapshot, messages = export_told()
     return {"rows": _rows(snapshot), "messages": messages.lines()}
+
+
+def caught_aovs():
+    """Messages of renders with an AOV, without a shadow catcher and with one."""
+    scene = stage.empty(8, 8, 1)
+    stage.camera()
+    thing = stage.cube(material=stage.shader())
+    scene.view_layers[0].aovs.add().name = "Tint"
+    scene.render.engine, told = "LANCER", []
+    for thing.is_shadow_catcher in (False, True):
+        bpy.ops.render.render()
+        told.append([line for line in last_messages[scene.name] if "AOV" in line])
+    return told
 
 
 def flat():
