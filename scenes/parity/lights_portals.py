@@ -53,7 +53,7 @@ _SHAPES = {
 }
 
 
-@variants(values={"even": (_even_sky, {"quick": True}), "uneven": (_uneven_sky, {})}, bounces=2)
+@variants(values={"even": _even_sky, "uneven": _uneven_sky}, bounces=2)
 def portal_of_a_room(scene, shine):
     _room(scene)
     _portal(scene, (2, 0, 1.6), (0, 1.5708, 0), **_SHAPES["rectangle"])

@@ -9,7 +9,7 @@ import time
 import bpy
 
 import addon
-from addon.ui import messages, render
+from addon.ui import messages, sampling
 
 
 def watch(say):
@@ -17,7 +17,7 @@ def watch(say):
     for area in bpy.context.window_manager.windows[0].screen.areas:
         if area.type == "PROPERTIES":
             area.spaces[0].context = "RENDER"
-    draw_measuring, draw_messages = render.draw_measuring, messages.LANCER_RENDER_PT_messages.draw
+    draw_measuring, draw_messages = sampling.draw_measuring, messages.LANCER_RENDER_PT_messages.draw
 
     def measuring(*arguments):
         drawn = draw_measuring(*arguments)
@@ -29,7 +29,7 @@ def watch(say):
         over = not bpy.app.is_job_running("RENDER")
         say("draws-figures" if over and context.scene.name in addon.engine.last_statistics else "draws-no-figures")
 
-    render.draw_measuring, messages.LANCER_RENDER_PT_messages.draw = measuring, told
+    sampling.draw_measuring, messages.LANCER_RENDER_PT_messages.draw = measuring, told
 
 
 def measure():

@@ -99,7 +99,7 @@ class Film:
         least, most = int(self.counts.min()), int(self.counts.max())
         # As in the library, a picture that lacks samples in between has no error yet.
         error = self.plane.error(self.counts) if least > 1 and not self._apart else math.inf
-        return PictureError(error, error, error, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, least, most)
+        return PictureError(error, error, error, *[0.0] * 11, least, most)
 
     def plan(self, target, confidence=0.95):
         """Return the ranges that bring the error below the target with the fewest samples, in order of gain."""
