@@ -8,7 +8,7 @@ both = pytest.mark.parametrize("which", [MODULE, PROGRAM])
 
 # Places of some metres in single precision: each engine rounds a few times by 2e-7.
 _PLACE = 1e-5
-# Both engines begin within the triangle, some 1e-4 of an edge of 0.3 m from its corner, each by its own rule.
+# Paths of either engine begin within the triangle, some 1e-4 of an edge of 0.3 m from its corner, each by its own rule.
 _CORNER = 1e-4
 # The steps of sRGB bytes near 1 are 0.0088, and the engines' places may lie on two sides of an edge.
 _BYTE = 0.009

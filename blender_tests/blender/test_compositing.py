@@ -17,7 +17,7 @@ def test_a_script_composites_both_engines_alike(which, tmp_path):
     level = theirs.mean(axis=0) + 0.1 * theirs.mean()
     variance = sum(np.mean(np.var(found / level, axis=0, ddof=1)) / len(found) for found in (ours, theirs))
     apart = np.abs(ours.mean(axis=0) - theirs.mean(axis=0)) / level
-    # Of 48 normal differences the largest is below five standard errors but once in 40 000. The denoiser smooths noise of
+    # The largest of 48 normal differences is below five standard errors but once in 40 000. The denoiser smooths noise of
     # one spread over a few hundredths of the light, by which engines of unequal noise may differ where a block has an edge.
     assert np.max(apart) < 5.0 * np.sqrt(variance) + 0.005
     assert 0.0 < np.sqrt(variance) < 0.01

@@ -131,7 +131,7 @@ def test_a_manifest_of_a_hundred_thousand_names():
     exponents = known >> np.uint32(23) & np.uint32(0xFF)
     assert exponents.min() >= 1 and exponents.max() <= 254
     assert not np.any((known ^ hashed) & np.uint32(0x807FFFFF))
-    # Of 1e5 hashes of 32 bits some pairs are equal by chance: 1.2 are expected, and 12 are not.
+    # Some pairs of 1e5 hashes of 32 bits are equal by chance: 1.2 are expected, and 12 are not.
     assert len(np.unique(hashed)) > 100_000 - 12
 
 

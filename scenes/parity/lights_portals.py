@@ -46,7 +46,7 @@ def _even_sky(scene):
     parts.set_world(scene, (0.7, 0.85, 1.0), 3.0)
 
 
-# Of the ellipse, the rim passes the corners of the window.
+# The rim of the ellipse passes the corners of the window.
 _SHAPES = {
     "rectangle": {"shape": "RECTANGLE", "size": 1.2, "size_y": 1.6},
     "ellipse": {"shape": "ELLIPSE", "size": 1.7, "size_y": 2.27},

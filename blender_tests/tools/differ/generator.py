@@ -21,7 +21,7 @@ from .random_nodes import Trees
 from .random_things import Things
 from .record import Record
 
-# What is rare in scenes unless it is asked for.
+# Features that are rare in scenes unless they are asked for.
 FEATURES = ("motion", "outputs", "links", "limits", "bakes", "views")
 
 

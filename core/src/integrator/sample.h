@@ -85,7 +85,7 @@ enum LightPass : uint32_t {
 // Guessed and Followed by fast_bounces.
 enum class Ghost : uint8_t { None = 0, Bounces, Caustics, Blurred, Sharp, Guessed, Followed };
 
-// Of so many paths that a limit changes, one sends a ghost or a pair of ghosts, which stand for all.
+// One of so many paths that a limit changes sends a ghost or a pair of ghosts, which stand for all.
 constexpr uint32_t paths_of(Ghost ghost) {
   return ghost == Ghost::None ? 1 : ghost == Ghost::Bounces || ghost == Ghost::Caustics ? 16 : 64;
 }
@@ -150,7 +150,7 @@ struct Energy {
   ExactSum clipped, clipped_direct; // by clamping of indirect and of direct light
   ExactSum cut, no_caustics;        // by limits of kinds of bounces and of lamps, and by the lack of caustics: see Ghost
   ExactSum last, before_last;       // found by the last bounce that is followed, and by the one before
-  // What a setting takes away from each sample, negative where it adds light, and its square.
+  // Light that a setting takes away from each sample, negative where it adds light, and its square.
   struct Change {
     ExactSum sum, squares;
 

@@ -187,7 +187,7 @@ private:
   // Members indexed by the number of a sample in the batch, like results_.
   std::vector<Record> records_;
   std::vector<DenoisingGuides> guides_; // where passes for denoising are requested
-  // What filter_glossy and Fast GI take away, where they are on.
+  // Light that filter_glossy and Fast GI take away, where they are on.
   std::vector<float> filtered_, guessed_;
 };
 
