@@ -125,6 +125,9 @@ def _export_portal(thing, light, matrix, who, messages):
         messages.add(f"{who}: its area is zero, it is no portal", severity=Severity.HINT)
         return None
     axes = axes_of(LightKind.AREA, matrix, False)
+    if shape == AreaShape.ELLIPSE:
+        text = "is a round portal, which makes Cycles' picture darker near it; here portals change the noise alone"
+        messages.add(f"{who}: {text}", "feature:round portals", Severity.HINT)
     fields = {"size": size, "shape": shape, "emission": (0.0, 0.0, 0.0), "opening": True}
     return snapshot.Light(name=thing.name, matrix=axes, kind=LightKind.AREA, **fields)
 

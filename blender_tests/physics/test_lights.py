@@ -321,6 +321,7 @@ def test_export(which, tmp_path):
     assert np.allclose(got["stretched"]["size"], (3.0, 0.5) if new else (1.0, 1.0))
     portal = got["portal"]
     assert portal["opening"] and portal["emission"] == [0.0, 0.0, 0.0]
+    assert ["round portal" in line for line in got["round portal"]] == [True]
     assert np.allclose(got["nodes"], np.array((0.5, 0.25, 1.0)) * 3.0)
     assert got["messages"] == []
 

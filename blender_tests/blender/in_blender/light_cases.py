@@ -52,6 +52,9 @@ def export():
     portal.data.cycles.is_portal = True
     opening = _export(portal, messages)
     result["portal"] = {"opening": opening.opening, "emission": list(map(float, opening.emission))}
+    portal.data.shape, told = "DISK", Messages()
+    _export(portal, told)
+    result["round portal"] = told.lines()
     plain, colored = stage.light("POINT"), stage.light("POINT")
     _nodes(colored, (0.5, 0.25, 1.0), 3.0)
     levels = [_export(thing, messages).emission for thing in (colored, plain)]
