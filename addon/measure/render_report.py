@@ -36,6 +36,8 @@ def changed_light(numbers, name):
     share, half = numbers.get(name, 0.0), numbers.get(f"{name}_error", 0.0)
     if max(abs(share), half) <= NOTHING:
         return ""
+    if math.isinf(half):
+        return f"{CHANGED[name]} has changed the light by a share that is unknown: without it the picture may be black"
     done = "taken away" if share > 0.0 else "added"
     return f"{CHANGED[name]} has {done} about {percent(abs(share))} of the light, give or take {percent(half)}"
 

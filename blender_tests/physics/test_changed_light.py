@@ -11,6 +11,7 @@ from tiny_scenes import lambert, move, rgb, rotate_x, scale
 from addon.bindings.enums import LobeKind, Pass
 from addon.bindings.session import Session
 from addon.bindings.snapshot import Instance, Lobe, Material
+from addon.measure.render_report import changed_light
 
 MIRROR = Material("mirror", lobes=(Lobe(LobeKind.GLOSSY, color=rgb(0.9), roughness=0.15),))
 FAST = {"fast_bounces": 1, "fast_distance": 0.8, "fast_factor": 0.7}
@@ -79,3 +80,12 @@ def test_no_pair_changes_the_picture():
     assert np.array_equal(tiny.render(plain), tiny.render(blurred))
     with Session.upload(blurred) as session:
         assert session.render_all() and session.error().filtered == 0.0
+
+
+def test_light_that_a_setting_alone_gives_has_no_share():
+    """The library tells an infinite interval where nothing is left without the setting."""
+    assert "unknown" in changed_light({"error_guessed": 0.0, "error_guessed_error": math.inf}, "error_guessed")
+    assert changed_light({"error_guessed": -0.5, "error_guessed_error": 0.25}, "error_guessed").endswith(
+        "added about 50 % of the light, give or take 25 %"
+    )
+    assert changed_light({}, "error_guessed") == ""
